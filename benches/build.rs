@@ -26,7 +26,7 @@ fn main() -> std::io::Result<()> {
             if symbolic {
                 text += &format!(
                     "impl {name} {{ fn with_link_values() -> Self {{ {} }} }}\n",
-                    chains::chain_value_expression("Self", n)
+                    chains::chain_struct_expression("Self", n)
                 );
             }
         }

@@ -209,14 +209,17 @@ fn derivatives_agree_with_finite_differences() {
     for Case { t, q, v, a, u } in flight_cases() {
         let tau = whole.generalized_forces(t, &q, &v, &u);
         let (by_q, by_v, by_force) = whole.forward_dynamics_derivatives(t, &q, &v, &tau);
-        let accelerations_of_whole = |q: &_, v: &_, tau: &_| whole.forward_dynamics(t, q, v, tau);
+        let accelerations_of_extended_mechanism =
+            |q: &_, v: &_, tau: &_| whole.forward_dynamics(t, q, v, tau);
         let displaced_configuration = |by| whole.integrate(&q, &by);
-        let found =
-            derivative_columns(still, |by| accelerations_of_whole(&displaced_configuration(by), &v, &tau));
+        let found = derivative_columns(still, |by| {
+            accelerations_of_extended_mechanism(&displaced_configuration(by), &v, &tau)
+        });
         assert_close_relative_to_largest("∂v̇/∂q", by_q.as_slice(), found.as_slice(), DIFFERENCE);
-        let found = derivative_columns(step, |by| accelerations_of_whole(&q, &(v + by), &tau));
+        let found = derivative_columns(step, |by| accelerations_of_extended_mechanism(&q, &(v + by), &tau));
         assert_close_relative_to_largest("∂v̇/∂v", by_v.as_slice(), found.as_slice(), DIFFERENCE);
-        let found = derivative_columns([1e2; 7], |by| accelerations_of_whole(&q, &v, &(tau + by)));
+        let found =
+            derivative_columns([1e2; 7], |by| accelerations_of_extended_mechanism(&q, &v, &(tau + by)));
         assert_close_relative_to_largest("∂v̇/∂τ", by_force.as_slice(), found.as_slice(), 1e-9);
         let (by_q, by_v) = whole.inverse_dynamics_derivatives(t, &q, &v, &a);
         let found =

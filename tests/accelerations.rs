@@ -20,10 +20,10 @@ mod spec;
 #[path = "../macros/compiler/tests/oracle/words.rs"]
 mod words;
 
-use jet::{C, real_number};
+use jet::{C, complex_from_real};
 use kane::State;
 use linkwork::nalgebra::SVector;
-use spec::{GeneratorSettings, Spec};
+use spec::{GeneratorSettings, MechanismSpec};
 use std::fmt::Write;
 
 /// Number of random mechanisms that the test compiles.
@@ -35,9 +35,9 @@ const STEP: f64 = 1e-40;
 
 /// Returns the description of mechanism `k`: a random tree, and for every third `k` a mechanism with
 /// identical limbs.
-fn random_mechanism(k: u64) -> Spec {
+fn spec_of_random_mechanism(k: u64) -> MechanismSpec {
     let limbs = if k % 3 == 2 { 2 + k as usize % 2 } else { 0 };
-    Spec {
+    MechanismSpec {
         symbolic: false,
         ..spec::random_mechanism_spec(
             7_000 + k,
@@ -52,7 +52,7 @@ fn generated_mechanisms_text() -> String {
         String::from("//! Written by the test `generated_file_is_up_to_date`.\n\nuse linkwork::mechanism;\n");
     for k in 0..COUNT {
         let (arguments, item) =
-            words::mechanism_source(&random_mechanism(k), &format!("Random{k}"), ", derivatives");
+            words::mechanism_source(&spec_of_random_mechanism(k), &format!("Random{k}"), ", derivatives");
         let about =
             format!("/// Random test mechanism {k}: bodies and joints with random masses and placements.");
         let _ = write!(out, "\n{about}\n#[mechanism({arguments})]\n{item}\n");
@@ -75,7 +75,7 @@ fn generated_file_is_up_to_date() {
 }
 
 /// Splits complex numbers into values (real parts) and derivatives (imaginary parts over the step).
-fn values_and_derivatives(list: &[C]) -> (Vec<f64>, Vec<f64>) {
+fn values_and_complex_step_derivatives(list: &[C]) -> (Vec<f64>, Vec<f64>) {
     list.iter().map(|x| (x.re, x.im / STEP)).unzip()
 }
 
@@ -94,7 +94,7 @@ fn forward_dynamics((columns, bias): &(Vec<Vec<C>>, Vec<C>), tau: &[C]) -> Vec<C
             row.iter_mut().zip(&pivot).for_each(|(x, p)| *x -= factor * p);
         }
     }
-    let mut x = vec![real_number(0.0); n];
+    let mut x = vec![complex_from_real(0.0); n];
     for i in (0..n).rev() {
         let known: C = (i + 1..n).map(|j| rows[i][j] * x[j]).sum();
         x[i] = (rows[i][n] - known) / rows[i][i];
@@ -112,7 +112,7 @@ fn assert_close_entries(what: &str, k: u64, actual: &[f64], expected: &[f64]) {
 
 macro_rules! check {
     ($($k:literal $name:ident)*) => {$(
-        let spec = random_mechanism($k);
+        let spec = spec_of_random_mechanism($k);
         let counts = kane::coordinate_and_velocity_counts(&spec);
         assert_eq!((mechanisms::$name::NQ, mechanisms::$name::NV), counts);
         let mut random = random::Random::new($k);
@@ -123,7 +123,7 @@ macro_rules! check {
         let state = State::new(q.as_slice(), v.as_slice(), tau.as_slice());
         let (by_q, by_v, inverse) = m.forward_dynamics_derivatives(&q, &v, &tau);
         let at_state = kane::mass_and_bias(&spec, &state.q, &state.v);
-        let (accelerations, _) = values_and_derivatives(&forward_dynamics(&at_state, &state.a));
+        let (accelerations, _) = values_and_complex_step_derivatives(&forward_dynamics(&at_state, &state.a));
         assert_close_entries("v̇", $k, m.forward_dynamics(&q, &v, &tau).as_slice(), &accelerations);
         let mut expected = [Vec::new(), Vec::new(), Vec::new()];
         for k in 0..mechanisms::$name::NV {
@@ -133,9 +133,9 @@ macro_rules! check {
             (v[k], tau[k]) = (v[k] + step, tau[k] + step);
             let moved = kane::mass_and_bias(&spec, &q, &state.v);
             let faster = kane::mass_and_bias(&spec, &state.q, &v);
-            expected[0].extend(values_and_derivatives(&forward_dynamics(&moved, &state.a)).1);
-            expected[1].extend(values_and_derivatives(&forward_dynamics(&faster, &state.a)).1);
-            expected[2].extend(values_and_derivatives(&forward_dynamics(&at_state, &tau)).1);
+            expected[0].extend(values_and_complex_step_derivatives(&forward_dynamics(&moved, &state.a)).1);
+            expected[1].extend(values_and_complex_step_derivatives(&forward_dynamics(&faster, &state.a)).1);
+            expected[2].extend(values_and_complex_step_derivatives(&forward_dynamics(&at_state, &tau)).1);
         }
         assert_close_entries("∂v̇/∂q", $k, by_q.as_slice(), &expected[0]);
         assert_close_entries("∂v̇/∂v", $k, by_v.as_slice(), &expected[1]);

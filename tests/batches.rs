@@ -27,7 +27,7 @@ struct Humanoid;
 /// Mechanism with every kind of coordinate chart, generic over its scalar type, with force laws that use many
 /// functions, and an output.
 #[mechanism(gravity = -g * y, derivatives, batch)]
-struct Machine<T> {
+struct MechanismOfAllCharts<T> {
     g: T,
     m: T,
     l: T,
@@ -82,7 +82,7 @@ struct Tail {
 
 /// Bead on a hoop that is driven as a function of time.
 #[mechanism(gravity = -9.81 * z, batch)]
-struct Hoop {
+struct BeadOnRotatingHoop {
     radius: f64,
     spin: f64,
     theta: Coordinate,
@@ -116,8 +116,8 @@ struct FourBar {
     closing: Pin,
 }
 
-fn sample_machine() -> Machine<f64> {
-    Machine { g: 9.7, m: 1.3, l: 0.4, k: 20.0 }
+fn sample_mechanism_of_all_charts() -> MechanismOfAllCharts<f64> {
+    MechanismOfAllCharts { g: 9.7, m: 1.3, l: 0.4, k: 20.0 }
 }
 
 /// Whether two numbers have the same bits; all NaNs count as equal.
@@ -134,12 +134,12 @@ fn assert_lanes_equal_states<T: Real, const R: usize, const C: usize, const L: u
     wide: &SMatrix<Lanes<T, L>, R, C>,
     one: impl Fn(usize) -> SMatrix<T, R, C>,
 ) {
-    assert_near(what, 0.0, wide, one);
+    assert_lanes_near_states(what, 0.0, wide, one);
 }
 
 /// Checks that each lane equals the result of its state up to `rounding`, relative to the largest entry. With
 /// `rounding = 0` the bits must be equal.
-fn assert_near<T: Real, const R: usize, const C: usize, const L: usize>(
+fn assert_lanes_near_states<T: Real, const R: usize, const C: usize, const L: usize>(
     what: &str,
     rounding: f64,
     wide: &SMatrix<Lanes<T, L>, R, C>,
@@ -164,12 +164,12 @@ fn scalar_as_matrix<T: Real>(x: T) -> SMatrix<T, 1, 1> {
 }
 
 /// `L` states of a mechanism, stored both as SIMD lanes and one by one.
-struct States<T, const N: usize, const L: usize> {
+struct LanesAndSingleStates<T, const N: usize, const L: usize> {
     wide: SVector<Lanes<T, L>, N>,
     each: [SVector<T, N>; L],
 }
 
-impl<T: Real, const N: usize, const L: usize> States<T, N, L> {
+impl<T: Real, const N: usize, const L: usize> LanesAndSingleStates<T, N, L> {
     fn new(each: [SVector<T, N>; L]) -> Self {
         Self { wide: SVector::from_fn(|i, _| Lanes::from_fn(|k| each[k][i])), each }
     }
@@ -199,15 +199,18 @@ fn check_all_functions<M, const NQ: usize, const NV: usize, const NU: usize, con
     let wide = m.lanes::<L>();
     let mut random = Random::new(17);
     for _ in 0..20 {
-        let t: States<M::Scalar, 1, L> = States::random_states(&mut random, 2.0);
-        let dv: States<M::Scalar, NV, L> = States::random_displacements(&mut random);
-        let q0 =
-            m.integrate(&m.neutral(), &States::<M::Scalar, NV, 1>::random_states(&mut random, 2.0).each[0]);
-        let q: States<M::Scalar, NQ, L> =
-            States::new(core::array::from_fn(|k| m.integrate(&q0, &dv.each[k])));
-        let v: States<M::Scalar, NV, L> = States::random_states(&mut random, 2.0);
-        let a: States<M::Scalar, NV, L> = States::random_states(&mut random, 5.0);
-        let u: States<M::Scalar, NU, L> = States::random_states(&mut random, 5.0);
+        let t: LanesAndSingleStates<M::Scalar, 1, L> = LanesAndSingleStates::random_states(&mut random, 2.0);
+        let dv: LanesAndSingleStates<M::Scalar, NV, L> =
+            LanesAndSingleStates::random_displacements(&mut random);
+        let q0 = m.integrate(
+            &m.neutral(),
+            &LanesAndSingleStates::<M::Scalar, NV, 1>::random_states(&mut random, 2.0).each[0],
+        );
+        let q: LanesAndSingleStates<M::Scalar, NQ, L> =
+            LanesAndSingleStates::new(core::array::from_fn(|k| m.integrate(&q0, &dv.each[k])));
+        let v: LanesAndSingleStates<M::Scalar, NV, L> = LanesAndSingleStates::random_states(&mut random, 2.0);
+        let a: LanesAndSingleStates<M::Scalar, NV, L> = LanesAndSingleStates::random_states(&mut random, 5.0);
+        let u: LanesAndSingleStates<M::Scalar, NU, L> = LanesAndSingleStates::random_states(&mut random, 5.0);
         let single_state = |k: usize| (t.each[k][0], &q.each[k], &v.each[k]);
         let (t0, q0, v0) = (t.wide[0], &q.wide, &v.wide);
         let start = q.each[0].map(Lanes::splat);
@@ -220,18 +223,24 @@ fn check_all_functions<M, const NQ: usize, const NV: usize, const NU: usize, con
         assert_lanes_equal_states("tangent_rate", &wide.tangent_rate(&dv.wide, v0), |k| {
             m.tangent_rate(&dv.each[k], &v.each[k])
         });
-        assert_near("mass_matrix", columns, &wide.mass_matrix(t0, q0), |k| {
+        assert_lanes_near_states("mass_matrix", columns, &wide.mass_matrix(t0, q0), |k| {
             m.mass_matrix(single_state(k).0, single_state(k).1)
         });
-        assert_near("bias_forces", limbs, &wide.bias_forces(t0, q0, v0), |k| {
+        assert_lanes_near_states("bias_forces", limbs, &wide.bias_forces(t0, q0, v0), |k| {
             m.bias_forces(single_state(k).0, single_state(k).1, single_state(k).2)
         });
-        assert_near("inverse_dynamics", limbs, &wide.inverse_dynamics(t0, q0, v0, &a.wide), |k| {
-            m.inverse_dynamics(single_state(k).0, single_state(k).1, single_state(k).2, &a.each[k])
-        });
-        assert_near("forward_dynamics", limbs, &wide.forward_dynamics(t0, q0, v0, &a.wide), |k| {
-            m.forward_dynamics(single_state(k).0, single_state(k).1, single_state(k).2, &a.each[k])
-        });
+        assert_lanes_near_states(
+            "inverse_dynamics",
+            limbs,
+            &wide.inverse_dynamics(t0, q0, v0, &a.wide),
+            |k| m.inverse_dynamics(single_state(k).0, single_state(k).1, single_state(k).2, &a.each[k]),
+        );
+        assert_lanes_near_states(
+            "forward_dynamics",
+            limbs,
+            &wide.forward_dynamics(t0, q0, v0, &a.wide),
+            |k| m.forward_dynamics(single_state(k).0, single_state(k).1, single_state(k).2, &a.each[k]),
+        );
         assert_lanes_equal_states("generalized_forces", &wide.generalized_forces(t0, q0, v0, &u.wide), |k| {
             m.generalized_forces(single_state(k).0, single_state(k).1, single_state(k).2, &u.each[k])
         });
@@ -286,16 +295,16 @@ fn batched_single_precision_equals_single_states() {
 
 #[test]
 fn batched_configurations_of_every_kind_equal_single_states() {
-    check_all_functions::<_, _, _, _, 4>(&sample_machine(), SAME);
-    check_all_functions::<_, _, _, _, 8>(&sample_machine(), SAME);
-    let single: Machine<f32> = Machine { g: 9.7, m: 1.3, l: 0.4, k: 20.0 };
+    check_all_functions::<_, _, _, _, 4>(&sample_mechanism_of_all_charts(), SAME);
+    check_all_functions::<_, _, _, _, 8>(&sample_mechanism_of_all_charts(), SAME);
+    let single: MechanismOfAllCharts<f32> = MechanismOfAllCharts { g: 9.7, m: 1.3, l: 0.4, k: 20.0 };
     check_all_functions::<_, _, _, _, 8>(&single, SAME);
 }
 
 #[test]
 fn batched_driven_mechanisms_equal_single_states() {
-    check_all_functions::<_, _, _, _, 4>(&Hoop { radius: 0.4, spin: 5.0 }, SAME);
-    check_all_functions::<_, _, _, _, 8>(&Hoop { radius: 0.4, spin: 5.0 }, SAME);
+    check_all_functions::<_, _, _, _, 4>(&BeadOnRotatingHoop { radius: 0.4, spin: 5.0 }, SAME);
+    check_all_functions::<_, _, _, _, 8>(&BeadOnRotatingHoop { radius: 0.4, spin: 5.0 }, SAME);
 }
 
 #[test]
@@ -305,8 +314,10 @@ fn batched_loops_equal_single_states() {
     check_all_functions::<_, _, _, _, 8>(&linkage, SAME);
     check_all_functions::<_, _, _, _, 8>(&linkage.prepare(), SAME);
     // One lane has dependent constraints, the other lanes have independent ones.
-    let q: States<f64, 3, 4> = States::new([0.3, 0.0, -0.5, 1.1].map(|a| SVector::from([a, -a, a])));
-    let [v, tau]: [States<f64, 3, 4>; 2] = [(); 2].map(|()| States::random_states(&mut Random::new(31), 1.0));
+    let q: LanesAndSingleStates<f64, 3, 4> =
+        LanesAndSingleStates::new([0.3, 0.0, -0.5, 1.1].map(|a| SVector::from([a, -a, a])));
+    let [v, tau]: [LanesAndSingleStates<f64, 3, 4>; 2] =
+        [(); 2].map(|()| LanesAndSingleStates::random_states(&mut Random::new(31), 1.0));
     assert_lanes_equal_states(
         "forward_dynamics",
         &linkage.forward_dynamics_lanes(&q.wide, &v.wide, &tau.wide),
@@ -316,23 +327,25 @@ fn batched_loops_equal_single_states() {
 
 #[test]
 fn large_angles_do_not_affect_neighbouring_lanes() {
-    let q: States<f64, 6, 8> =
-        States::new(core::array::from_fn(|k| SVector::from_fn(|i, _| [0.3, 1e6, -2.0][(k + i) % 3])));
+    let q: LanesAndSingleStates<f64, 6, 8> = LanesAndSingleStates::new(core::array::from_fn(|k| {
+        SVector::from_fn(|i, _| [0.3, 1e6, -2.0][(k + i) % 3])
+    }));
     let found = Ur5.mass_matrix_lanes(&q.wide);
-    assert_near("mass_matrix", COLUMNS[0], &found, |k| Ur5.mass_matrix(&q.each[k]));
+    assert_lanes_near_states("mass_matrix", COLUMNS[0], &found, |k| Ur5.mass_matrix(&q.each[k]));
 }
 
 #[test]
 fn batched_optional_functions_equal_single_states() {
     let mut random = Random::new(23);
-    let q: States<f64, 8, 4> = States::random_states(&mut random, 2.0);
-    let [v, a]: [States<f64, 8, 4>; 2] = [(); 2].map(|()| States::random_states(&mut random, 2.0));
-    let u: States<f64, 8, 4> = States::random_states(&mut random, 2.0);
+    let q: LanesAndSingleStates<f64, 8, 4> = LanesAndSingleStates::random_states(&mut random, 2.0);
+    let [v, a]: [LanesAndSingleStates<f64, 8, 4>; 2] =
+        [(); 2].map(|()| LanesAndSingleStates::random_states(&mut random, 2.0));
+    let u: LanesAndSingleStates<f64, 8, 4> = LanesAndSingleStates::random_states(&mut random, 2.0);
     let (by_q, by_v) = Panda.inverse_dynamics_derivatives_lanes(&q.wide, &v.wide, &a.wide);
     let derivatives_of_state =
         |k: usize| Panda.inverse_dynamics_derivatives(&q.each[k], &v.each[k], &a.each[k]);
-    assert_near("∂τ/∂q", 1e-12, &by_q, |k| derivatives_of_state(k).0);
-    assert_near("∂τ/∂v", 1e-12, &by_v, |k| derivatives_of_state(k).1);
+    assert_lanes_near_states("∂τ/∂q", 1e-12, &by_q, |k| derivatives_of_state(k).0);
+    assert_lanes_near_states("∂τ/∂v", 1e-12, &by_v, |k| derivatives_of_state(k).1);
     let (state, input) = Panda.linearize_lanes(&q.wide, &v.wide, &u.wide);
     let linear_model_of_state = |k: usize| Panda.linearize(&q.each[k], &v.each[k], &u.each[k]);
     assert_lanes_equal_states("A", &state, |k| linear_model_of_state(k).0);
@@ -350,11 +363,13 @@ fn batched_optional_functions_equal_single_states() {
 
 #[test]
 fn batched_functions_of_large_mechanisms_call_each_other() {
-    let (m, mut random) = (sample_machine(), Random::new(29));
-    let dv: States<f64, 12, 4> = States::random_states(&mut random, 2.0);
-    let q: States<f64, 14, 4> = States::new(core::array::from_fn(|k| m.integrate(&m.neutral(), &dv.each[k])));
-    let [v, tau]: [States<f64, 12, 4>; 2] = [(); 2].map(|()| States::random_states(&mut random, 2.0));
-    let u: States<f64, 1, 4> = States::random_states(&mut random, 2.0);
+    let (m, mut random) = (sample_mechanism_of_all_charts(), Random::new(29));
+    let dv: LanesAndSingleStates<f64, 12, 4> = LanesAndSingleStates::random_states(&mut random, 2.0);
+    let q: LanesAndSingleStates<f64, 14, 4> =
+        LanesAndSingleStates::new(core::array::from_fn(|k| m.integrate(&m.neutral(), &dv.each[k])));
+    let [v, tau]: [LanesAndSingleStates<f64, 12, 4>; 2] =
+        [(); 2].map(|()| LanesAndSingleStates::random_states(&mut random, 2.0));
+    let u: LanesAndSingleStates<f64, 1, 4> = LanesAndSingleStates::random_states(&mut random, 2.0);
     let (by_q, _, inverse) = m.forward_dynamics_derivatives_lanes(&q.wide, &v.wide, &tau.wide);
     let derivatives_of_state =
         |k: usize| m.forward_dynamics_derivatives(&q.each[k], &v.each[k], &tau.each[k]);
@@ -371,18 +386,22 @@ fn batched_functions_of_large_mechanisms_call_each_other() {
 #[test]
 fn batched_composed_derivatives_are_written_to_matrices() {
     let mut random = Random::new(37);
-    let dv: States<f64, 12, 4> = States::random_states(&mut random, 2.0);
-    let q: States<f64, 15, 4> = States::new(dv.each.map(|dv| Tail.integrate(&Tail.neutral(), &dv)));
-    let [v, tau]: [States<f64, 12, 4>; 2] = [(); 2].map(|()| States::random_states(&mut random, 2.0));
+    let dv: LanesAndSingleStates<f64, 12, 4> = LanesAndSingleStates::random_states(&mut random, 2.0);
+    let q: LanesAndSingleStates<f64, 15, 4> =
+        LanesAndSingleStates::new(dv.each.map(|dv| Tail.integrate(&Tail.neutral(), &dv)));
+    let [v, tau]: [LanesAndSingleStates<f64, 12, 4>; 2] =
+        [(); 2].map(|()| LanesAndSingleStates::random_states(&mut random, 2.0));
     let mut into = [SMatrix::zeros(); 3];
     let [by_q, by_v, inverse] = &mut into;
     let a = Tail.forward_dynamics_derivatives_into_lanes(&q.wide, &v.wide, &tau.wide, by_q, by_v, inverse);
-    assert_near("v̇", 1e-11, &a, |k| Tail.forward_dynamics(&q.each[k], &v.each[k], &tau.each[k]));
+    assert_lanes_near_states("v̇", 1e-11, &a, |k| {
+        Tail.forward_dynamics(&q.each[k], &v.each[k], &tau.each[k])
+    });
     let derivatives_of_state =
         |k: usize| Tail.forward_dynamics_derivatives(&q.each[k], &v.each[k], &tau.each[k]);
-    assert_near("∂v̇/∂q", 1e-11, &into[0], |k| derivatives_of_state(k).0);
-    assert_near("∂v̇/∂v", 1e-11, &into[1], |k| derivatives_of_state(k).1);
-    assert_near("M⁻¹", 1e-11, &into[2], |k| derivatives_of_state(k).2);
+    assert_lanes_near_states("∂v̇/∂q", 1e-11, &into[0], |k| derivatives_of_state(k).0);
+    assert_lanes_near_states("∂v̇/∂v", 1e-11, &into[1], |k| derivatives_of_state(k).1);
+    assert_lanes_near_states("M⁻¹", 1e-11, &into[2], |k| derivatives_of_state(k).2);
 }
 
 #[test]

@@ -6,7 +6,7 @@ use support::random::Random;
 
 /// Chain of pins, sleeves and screws about coordinate axes and skew axes, with passive forces.
 #[mechanism(gravity = 1.2 * x - 9.6 * z, derivatives, batch)]
-struct Crane {
+struct ChainOfMixedJoints {
     #[body(mass = 1.43, com = [0.05, 0.06, 0.19], inertia = cuboid(1.43, 0.25, 0.28, 0.21))]
     link0: Body,
     #[joint(ground.at(0.2 * y).rotated(x(0.3)) -> link0, about = x)]
@@ -258,7 +258,7 @@ macro_rules! check_derivatives {
 
 #[test]
 fn a_chain_with_passive_forces_has_the_derivatives_of_its_inverse_dynamics() {
-    check_derivatives!(Crane {}, Crane);
+    check_derivatives!(ChainOfMixedJoints {}, ChainOfMixedJoints);
 }
 
 #[test]

@@ -17,7 +17,7 @@ struct Top {
 
 /// Rigid body that moves freely in space, without forces.
 #[mechanism(conserved, hamilton)]
-struct Stone {
+struct FreeRigidBody {
     #[body(mass = 2, com = 0.1 * x + 0.2 * y, inertia = diagonal(0.3, 0.4, 0.5))]
     stone: Body,
     #[joint(ground -> stone)]
@@ -26,7 +26,7 @@ struct Stone {
 
 /// Two carts on a rail with a spring between them, and a pendulum on the second.
 #[mechanism(gravity = -9.81 * y, conserved, hamilton)]
-struct Carts {
+struct CoupledCartsWithPendulum {
     mass: f64,
     #[body(mass = mass)]
     first: Body,
@@ -63,7 +63,7 @@ struct CartWithFrictionalPendulum {
 
 /// Bead on a hoop that rotates at a constant rate.
 #[mechanism(gravity = -9.81 * z, conserved, hamilton)]
-struct Hoop {
+struct BeadOnRotatingHoop {
     spin: f64,
     theta: Coordinate,
     #[frame(ground, z(spin * t))]
@@ -152,7 +152,7 @@ struct FloatingTriangle {
 
 /// Disk that rolls on a plane without slipping.
 #[mechanism(gravity = -9.81 * z, conserved)]
-struct Disk {
+struct RollingDisk {
     #[body(mass = 0.5, inertia = disk(0.5, 0.2, y))]
     disk: Body,
     #[joint(ground -> disk)]
@@ -182,16 +182,16 @@ fn conserved_quantities_are_listed() {
     let three = ["x", "y", "z"].map(|k| format!("{axis} {k}{center}"));
     let all: Vec<String> =
         ["energy".to_string()].into_iter().chain(six.clone()).chain(three.clone()).collect();
-    assert_eq!(Stone::CONSERVED[..7], all);
-    assert_eq!(Carts::CONSERVED, ["energy", "momentum of rail"]);
+    assert_eq!(FreeRigidBody::CONSERVED[..7], all);
+    assert_eq!(CoupledCartsWithPendulum::CONSERVED, ["energy", "momentum of rail"]);
     assert_eq!(CartWithFrictionalPendulum::CONSERVED, ["momentum of rail"]);
-    assert_eq!(Hoop::CONSERVED, ["Jacobi's integral"]);
+    assert_eq!(BeadOnRotatingHoop::CONSERVED, ["Jacobi's integral"]);
     assert_eq!(PendulumWithMovingPivot::CONSERVED, [""; 0]);
     assert_eq!(Planets::CONSERVED[..7], all);
     assert_eq!(Charge::CONSERVED, ["momentum of flight.z"]);
     assert_eq!(FourBar::CONSERVED, ["energy"]);
     assert_eq!(FloatingTriangle::CONSERVED, ["energy", "momentum of place.x", "momentum of place.y"]);
-    assert_eq!(Disk::CONSERVED[0], "energy");
+    assert_eq!(RollingDisk::CONSERVED[0], "energy");
     assert_eq!(BallSlidingOnPlane::CONSERVED, [""; 0]);
 }
 
@@ -222,11 +222,16 @@ fn conserved_quantities_are_constant_along_motions() {
     let top = Top { height: 0.2 };
     stays!(&top, random.random_configuration(&top), random.random_vector(4.0), |m, t, q, v| m
         .conserved(&q, &v));
-    stays!(Stone {}, random.random_configuration(&Stone {}), random.random_vector(2.0), |m, t, q, v| m
+    stays!(
+        FreeRigidBody {},
+        random.random_configuration(&FreeRigidBody {}),
+        random.random_vector(2.0),
+        |m, t, q, v| m.conserved(&q, &v)
+    );
+    stays!(CoupledCartsWithPendulum { mass: 1.3 }, [0.1, 0.7, 0.9], [0.4, -1.0, 2.0], |m, t, q, v| m
         .conserved(&q, &v));
-    stays!(Carts { mass: 1.3 }, [0.1, 0.7, 0.9], [0.4, -1.0, 2.0], |m, t, q, v| m.conserved(&q, &v));
     stays!(CartWithFrictionalPendulum {}, [0.1, 0.7], [0.4, 2.0], |m, t, q, v| m.conserved(&q, &v));
-    stays!(Hoop { spin: 5.0 }, [0.4], [1.0], |m, t, q, v| m.conserved(t, &q, &v));
+    stays!(BeadOnRotatingHoop { spin: 5.0 }, [0.4], [1.0], |m, t, q, v| m.conserved(t, &q, &v));
     let (q, v) = ([0.0, 0.0, 0.0, 1.0, 0.2, 0.1], [0.1, -0.3, 0.2, 0.2, 1.2, 0.5]);
     stays!(Planets { pull: 4.0 }, q, v, |m, t, q, v| m.conserved(&q, &v));
     stays!(Charge { electric: 2.0 }, [0.0; 3], [1.0, 2.0, 3.0], |m, t, q, v| m.conserved(&q, &v));
@@ -237,9 +242,9 @@ fn conserved_quantities_are_constant_along_motions() {
     let v =
         FloatingTriangle {}.complete_velocity(&q, &[0.3, -0.2, 3.0, 0.0, 0.0].into(), &[0, 1, 2]).unwrap();
     stays!(FloatingTriangle {}, q, v, |m, t, q, v| m.conserved(&q, &v));
-    let q = Disk {}.assemble(&[0.0, 0.0, 0.2, 0.1, 0.0, 0.0, 0.995].into(), &[]).unwrap();
-    let v = Disk {}.project_velocity(&q, &[1.0, 0.0, 0.0, 0.2, 5.0, 0.3].into()).unwrap();
-    stays!(Disk {}, q, v, |m, t, q, v| m.conserved(&q, &v));
+    let q = RollingDisk {}.assemble(&[0.0, 0.0, 0.2, 0.1, 0.0, 0.0, 0.995].into(), &[]).unwrap();
+    let v = RollingDisk {}.project_velocity(&q, &[1.0, 0.0, 0.0, 0.2, 5.0, 0.3].into()).unwrap();
+    stays!(RollingDisk {}, q, v, |m, t, q, v| m.conserved(&q, &v));
 }
 
 /// Checks `v = ∂H/∂p`, the energy, and that `ṗ` agrees with `momentum_rate`.
@@ -274,11 +279,11 @@ fn hamiltons_equations_agree_with_the_dynamics() {
             (random.random_configuration(&top), random.random_vector(2.0));
         canonical!(&top, q, v, random.random_vector(3.0), |_| top.kinetic_energy(&q, &v)
             + top.potential_energy(&q));
-        let stone = Stone {};
+        let stone = FreeRigidBody {};
         let (q, v): (SVector<f64, 7>, SVector<f64, 6>) =
             (random.random_configuration(&stone), random.random_vector(2.0));
         canonical!(&stone, q, v, random.random_vector(3.0), |_| stone.kinetic_energy(&q, &v));
-        let carts = Carts { mass: 1.1 };
+        let carts = CoupledCartsWithPendulum { mass: 1.1 };
         let (q, v): (SVector<f64, 3>, SVector<f64, 3>) =
             (random.random_configuration(&carts), random.random_vector(2.0));
         canonical!(&carts, q, v, random.random_vector(3.0), |_| carts.kinetic_energy(&q, &v)
@@ -288,7 +293,7 @@ fn hamiltons_equations_agree_with_the_dynamics() {
             (random.random_configuration(&greased), random.random_vector(2.0));
         canonical!(&greased, q, v, random.random_vector(3.0), |_| greased.kinetic_energy(&q, &v)
             + greased.potential_energy(&q));
-        let (hoop, t) = (Hoop { spin: 4.0 }, random.uniform_number(2.0));
+        let (hoop, t) = (BeadOnRotatingHoop { spin: 4.0 }, random.uniform_number(2.0));
         let (q, v): (SVector<f64, 1>, SVector<f64, 1>) =
             (random.random_vector(2.0), random.random_vector(2.0));
         let hamiltonian =
@@ -305,7 +310,7 @@ fn hamiltons_equations_agree_with_the_dynamics() {
 #[test]
 fn momentum_rate_is_negative_gradient_of_the_hamiltonian() {
     let mut random = Random::new(5);
-    let carts = Carts { mass: 0.8 };
+    let carts = CoupledCartsWithPendulum { mass: 0.8 };
     for _ in 0..5 {
         let (q, p): (SVector<f64, 3>, SVector<f64, 3>) =
             (random.random_vector(1.0), random.random_vector(2.0));

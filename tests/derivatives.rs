@@ -14,18 +14,18 @@ use linkwork_compiler::expr::{Expr, Graph};
 use linkwork_compiler::kinematics;
 use linkwork_compiler::lower::{Op, Program, lower};
 use linkwork_compiler::mechanics::derivatives::{
-    self, DerivationMethod, Trunk, analytic, invariance, symbolic,
+    self, DerivationMethod, TrunkLimbPartition, analytic, invariance, symbolic,
 };
 use linkwork_compiler::mechanics::{self, crba, ldl, rnea};
 use linkwork_compiler::mechanism::{Chart, Model, Quantity};
-use linkwork_compiler::{compile, read_source};
+use linkwork_compiler::{compile, parse_source_and_import};
 use proptest::prelude::*;
 use random_limbs::random_creatures;
-use random_tree::{random_trees, tied_trees};
-use random_world::random_worlds;
+use random_tree::{random_trees, random_trees_with_elements};
+use random_world::random_element_mechanisms;
 use std::path::Path;
 use support::compare::assert_close_relative_to_largest;
-use support::model::{check_model_or_errors, random_symbol_values, with_model};
+use support::model::{check_model_or_panic, check_model_or_return_errors, random_symbol_values};
 use support::random::property_test_config;
 use support::table::Record;
 
@@ -106,7 +106,7 @@ fn check_recursive_derivatives(model: &Model<'_>, seed: u64) {
     let joints = kinematics::joints_of_model(model);
     let (v, a) = (mechanics::velocity_symbols(model), mechanics::acceleration_symbols(model));
     let tau = rnea::inverse_dynamics(model, &joints, &v, Some(&a));
-    let expected = symbolic::force_derivatives(model, &tau);
+    let expected = symbolic::configuration_and_velocity_derivatives(model, &tau);
     for lanes in [1, 2, 4, 8] {
         let found = derivatives::inverse_dynamics(model, &joints, &a, DerivationMethod::Recursion(lanes));
         assert_same_expressions("∂τ/∂q", model, seed, &found.by_q.concat(), &expected.by_q.concat());
@@ -144,10 +144,10 @@ fn check_coriolis_matrix<'g>(model: &Model<'g>, seed: u64, lanes: usize) {
     assert_same_expressions("Ṁ", model, seed, &sum, &rate);
 }
 
-fn check_inverse_derivatives<'g>(model: &Model<'g>, seed: u64) {
+fn check_mass_matrix_inverse<'g>(model: &Model<'g>, seed: u64) {
     let joints = kinematics::joints_of_model(model);
     let mass = crba::mass_matrix(model, &joints);
-    let factor = derivatives::Factor::new(&mass, &joints);
+    let factor = derivatives::MatrixFactorisation::new(&mass, &joints);
     let a = mechanics::acceleration_symbols(model);
     let matrix_times_vector = |m: &crba::Matrix<'g>, x: &[Expr<'g>]| -> Vec<Expr<'g>> {
         let zero = model.graph.zero();
@@ -156,9 +156,13 @@ fn check_inverse_derivatives<'g>(model: &Model<'g>, seed: u64) {
     let forces = matrix_times_vector(&mass, &a);
     assert_same_expressions("inverse", model, seed, &matrix_times_vector(&factor.inverse(), &forces), &a);
     assert_same_expressions("solution", model, seed, &factor.solve_factored(forces.clone()), &a);
-    let trunk = Trunk::new(&joints, &mass, &Trunk::branching_descendant_flags(&joints, model.nv()));
+    let trunk = TrunkLimbPartition::new(
+        &joints,
+        &mass,
+        &TrunkLimbPartition::branching_descendant_flags(&joints, model.nv()),
+    );
     let Some(trunk) = trunk else { return };
-    let parts = derivatives::Inverse::new(&mass, &trunk);
+    let parts = derivatives::BlockInverseMassMatrix::new(&mass, &trunk);
     assert_same_expressions("solution in parts", model, seed, &parts.solve_by_trunk_and_limbs(&forces), &a);
     let (mut whole, factors) = (parts.trunk_and_limb_inverse_columns(), parts.limb_to_trunk_factors());
     for row in &mut whole {
@@ -177,7 +181,7 @@ fn check_invariant_columns(model: &Model<'_>, seed: u64) -> [Vec<usize>; 2] {
     let mass = crba::mass_matrix(model, &joints);
     let a = mechanics::acceleration_symbols(model);
     let tau = rnea::inverse_dynamics(model, &joints, &mechanics::velocity_symbols(model), Some(&a));
-    let forces = symbolic::force_derivatives(model, &tau);
+    let forces = symbolic::configuration_and_velocity_derivatives(model, &tau);
     let known = invariance::columns_determined_by_invariance(model, &joints);
     for (forces, columns) in [(&forces.by_q, &known.by_q), (&forces.by_v, &known.by_v)] {
         for (k, column) in columns {
@@ -194,7 +198,7 @@ fn check_invariant_columns(model: &Model<'_>, seed: u64) -> [Vec<usize>; 2] {
 
 /// Returns the configuration after a step of size `h` along velocity `k`, correct to second order in `h`.
 fn displaced_configuration(model: &Model<'_>, q: &[f64], k: usize, h: f64) -> Vec<f64> {
-    let symbol_value = |s| match Quantity::from_symbol(s) {
+    let symbol_value_at_unit_velocity = |s| match Quantity::from_symbol(s) {
         Quantity::Configuration(i) => q[i],
         Quantity::Velocity(i) => f64::from(u8::from(i == k)),
         _ => 0.0,
@@ -202,7 +206,7 @@ fn displaced_configuration(model: &Model<'_>, q: &[f64], k: usize, h: f64) -> Ve
     let rates: Vec<Expr<'_>> =
         (0..model.nq()).map(|i| kinematics::configuration_rate(model.configuration_space(), i)).collect();
     let mut moved: Vec<f64> =
-        q.iter().zip(eval(&rates, &symbol_value)).map(|(q, rate)| q + h * rate).collect();
+        q.iter().zip(eval(&rates, &symbol_value_at_unit_velocity)).map(|(q, rate)| q + h * rate).collect();
     for first in model.charts.iter().filter_map(Chart::first_quaternion_index) {
         let length = moved[first.range_of_entries(4)].iter().map(|c| c * c).sum::<f64>().sqrt();
         moved[first.range_of_entries(4)].iter_mut().for_each(|c| *c /= length);
@@ -222,7 +226,7 @@ fn deviation_from_differences(model: &Model<'_>, seed: u64) -> (f64, usize) {
     let rest: Vec<Expr<'_>> = tau.iter().zip(&bias).map(|(t, h)| *t - *h).collect();
     let motion = ldl::solve_symmetric(mass.clone(), rest, &joints);
     let mut found =
-        derivatives::forward_dynamics(model, &joints, &mass, &tau, DerivationMethod::Recursion(1));
+        derivatives::linearize_forward_dynamics(model, &joints, &mass, &tau, DerivationMethod::Recursion(1));
     let known = invariance::columns_determined_by_invariance(model, &joints);
     known.replace_known_columns(&mut found.forces);
     let at = random_symbol_values(model, seed);
@@ -240,12 +244,12 @@ fn deviation_from_differences(model: &Model<'_>, seed: u64) -> (f64, usize) {
                 if known.contains(&k) { column } else { (0..n).map(negated_product_row).collect() };
             let motion_at_displacement = |h: f64| {
                 let q = if by_q { displaced_configuration(model, &q, k, h) } else { q.clone() };
-                let displaced_value = |s| match Quantity::from_symbol(s) {
+                let displaced_symbol_value = |s| match Quantity::from_symbol(s) {
                     Quantity::Configuration(i) => q[i],
                     Quantity::Velocity(i) if i == k && !by_q => at(s) + h,
                     _ => at(s),
                 };
-                eval(&motion, &displaced_value)
+                eval(&motion, &displaced_symbol_value)
             };
             for ((found, after), before) in
                 column.iter().zip(motion_at_displacement(STEP)).zip(motion_at_displacement(-STEP))
@@ -275,7 +279,7 @@ fn derivatives_include_forces_from_the_ground() {
                  {element}"
         );
         let source = ("gravity = -9.81 * z".to_string(), format!("struct Boat {{ {fields} }}"));
-        with_model(&source, |_, model| found = Some(check_invariant_columns(model, 3)));
+        check_model_or_panic(&source, |_, model| found = Some(check_invariant_columns(model, 3)));
         found.expect("it compiles")
     };
     let (all, none) = (|| [vec![3, 4, 5], vec![0, 1, 2]], Vec::new);
@@ -323,12 +327,12 @@ proptest! {
 
     #[test]
     fn recursive_and_symbolic_derivatives_agree(tree in random_trees(4), seed in 0_u64..1000) {
-        with_model(&tree.tree_source(), |_, model| {
+        check_model_or_panic(&tree.tree_source(), |_, model| {
             check_recursive_derivatives(model, seed);
             for lanes in [1, 4, 8] {
                 check_coriolis_matrix(model, seed, lanes);
             }
-            check_inverse_derivatives(model, seed);
+            check_mass_matrix_inverse(model, seed);
             check_invariant_columns(model, seed);
         });
     }
@@ -341,16 +345,17 @@ proptest! {
     /// act on free and on jointed bodies, and on the ground.
     #[test]
     fn derivatives_agree_with_finite_differences(
-        (tree, world, creature) in (tied_trees(4), random_worlds(), random_creatures(2)),
+        (tree, world, creature) in (random_trees_with_elements(4), random_element_mechanisms(),
+            random_creatures(2)),
         which in 0..6_usize,
         seed in 0_u64..1000,
     ) {
         let source = match which {
-            0 => world.world_source(),
+            0 => world.element_mechanism_source(),
             1 => creature.creature_source(),
             _ => tree.tree_source(),
         };
-        let check_model = |model: &Model<'_>| {
+        let check_derivatives_of_model = |model: &Model<'_>| {
             if model.constraints.is_empty() {
                 let (deviation, known) = deviation_from_differences(model, seed);
                 assert!(deviation < 1e-6, "{deviation:e}, {known} columns are known (seed {seed})\n{}", source.1);
@@ -358,7 +363,7 @@ proptest! {
         };
         // Mechanisms with an element between a body and itself, or with an element that moves nothing, are
         // rejected.
-        let _ = check_model_or_errors(&source, |_, model| check_model(model));
+        let _ = check_model_or_return_errors(&source, |_, model| check_derivatives_of_model(model));
     }
 }
 
@@ -375,9 +380,10 @@ fn derivative_programs(arguments: &str) -> [Program; 2] {
     let parse_tokens = |text: &str| text.parse().expect("the source is Rust");
     let mut cx = Diagnostics::new();
     let graph = Graph::new();
-    let source = read_source(parse_tokens(arguments), parse_tokens("struct Robot;"), folder, &mut cx);
+    let source =
+        parse_source_and_import(parse_tokens(arguments), parse_tokens("struct Robot;"), folder, &mut cx);
     let Some((_, output)) = source.and_then(|s| compile(&s, &graph, &mut cx)) else {
-        panic!("{}", cx.messages().join("\n"));
+        panic!("{}", cx.full_message_texts().join("\n"));
     };
     ["inverse_dynamics_derivatives", "mass_matrix_inverse"].map(|name| {
         let f = output.functions.iter().find(|f| f.name == name).expect("the function is generated");

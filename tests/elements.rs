@@ -18,8 +18,8 @@ use linkwork_compiler::mechanism::{Model, Quantity};
 use linkwork_compiler::resolve::outline_of_description;
 use linkwork_compiler::syntax::Description;
 use proptest::prelude::*;
-use random_world::{OUTPUTS, random_worlds};
-use support::model::with_model;
+use random_world::{OUTPUTS, random_element_mechanisms};
+use support::model::check_model_or_panic;
 use support::random::property_test_config;
 
 /// Tolerance relative to the largest entry of the reference.
@@ -28,40 +28,42 @@ const TOLERANCE: f64 = 1e-10;
 const DIFFERENCE: f64 = 1e-7;
 
 /// Numbers for all symbols: a state, accelerations, inputs and time.
-struct State {
+struct ValuesOfSymbols {
     q: Vec<f64>,
     v: Vec<f64>,
     seed: u64,
 }
 
-impl State {
-    fn new(model: &Model<'_>, seed: u64) -> State {
+impl ValuesOfSymbols {
+    fn new(model: &Model<'_>, seed: u64) -> ValuesOfSymbols {
         let v = (0..model.nv())
             .map(|k| 2.0 * (sample_of_symbol(Quantity::Velocity(k).symbol(), seed) - 1.0))
             .collect();
-        State { q: random_configuration(model, seed), v, seed }
+        ValuesOfSymbols { q: random_configuration(model, seed), v, seed }
     }
 
     fn values_of_expressions(&self, e: &[Expr<'_>]) -> Vec<f64> {
-        self.values_after(0.0, &[], e)
+        self.values_of_expressions_after(0.0, &[], e)
     }
 
     /// Returns the values of expressions after a short time along the motion with the given rates of `q`, to
     /// first order.
-    fn values_after(&self, time: f64, rates: &[f64], e: &[Expr<'_>]) -> Vec<f64> {
-        let rate_of_symbol = |s: Symbol| 2.0 * (sample_of_symbol(s, self.seed) - 1.0);
+    fn values_of_expressions_after(&self, time: f64, rates: &[f64], e: &[Expr<'_>]) -> Vec<f64> {
+        let test_rate_of_symbol = |s: Symbol| 2.0 * (sample_of_symbol(s, self.seed) - 1.0);
         eval(e, &|s| match Quantity::from_symbol(s) {
             Quantity::Configuration(k) => self.q[k] + rates.get(k).map_or(0.0, |r| time * r),
-            Quantity::Velocity(k) => self.v[k] + time * rate_of_symbol(Quantity::Acceleration(k).symbol()),
-            Quantity::Time => rate_of_symbol(s) + time,
-            _ => rate_of_symbol(s),
+            Quantity::Velocity(k) => {
+                self.v[k] + time * test_rate_of_symbol(Quantity::Acceleration(k).symbol())
+            }
+            Quantity::Time => test_rate_of_symbol(s) + time,
+            _ => test_rate_of_symbol(s),
         })
     }
 
     /// Returns the rates of expressions along the motion, by differences.
     fn numeric_rates_of_expressions(&self, model: &Model<'_>, e: &[Expr<'_>]) -> Vec<f64> {
         let rates = self.values_of_expressions(&lagrange::configuration_rates(model));
-        let values_after_step = |s: f64| self.values_after(s, &rates, e);
+        let values_after_step = |s: f64| self.values_of_expressions_after(s, &rates, e);
         let h = 1e-3;
         let (near, far) = (
             (values_after_step(h), values_after_step(-h)),
@@ -91,17 +93,27 @@ fn check_outline_signatures(description: &Description, model: &Model<'_>) {
     for (guess, output) in outline.outputs.iter().zip(&model.outputs) {
         let symbols: Vec<Quantity> =
             symbols_in(&output.values).into_iter().map(Quantity::from_symbol).collect();
-        let has_quantity = |f: fn(&Quantity) -> bool| symbols.iter().any(f);
+        let output_uses_quantity = |f: fn(&Quantity) -> bool| symbols.iter().any(f);
         assert_eq!((&guess.name, guess.size), (&output.name, output.values.len()));
         assert_eq!(
             guess.uses.accelerations,
-            has_quantity(|q| matches!(q, Quantity::Acceleration(_))),
+            output_uses_quantity(|q| matches!(q, Quantity::Acceleration(_))),
             "{}",
             guess.name
         );
         let velocities = guess.uses.velocities || guess.uses.accelerations;
-        assert_eq!(velocities, has_quantity(|q| matches!(q, Quantity::Velocity(_))), "{}", guess.name);
-        assert_eq!(guess.uses.inputs, has_quantity(|q| matches!(q, Quantity::Input(_))), "{}", guess.name);
+        assert_eq!(
+            velocities,
+            output_uses_quantity(|q| matches!(q, Quantity::Velocity(_))),
+            "{}",
+            guess.name
+        );
+        assert_eq!(
+            guess.uses.inputs,
+            output_uses_quantity(|q| matches!(q, Quantity::Input(_))),
+            "{}",
+            guess.name
+        );
     }
     assert_eq!(outline.outputs.len(), model.outputs.len());
 }
@@ -119,8 +131,8 @@ fn derivative_of_expression<'g>(model: &Model<'g>, quantity: Quantity, e: Expr<'
     DirectionalDerivative::with_respect_to(quantity.symbol(), model.graph).differentiate(e)
 }
 
-fn check_dynamics(model: &Model<'_>, seed: u64) {
-    let state = State::new(model, seed);
+fn compare_dynamics_with_lagrange(model: &Model<'_>, seed: u64) {
+    let state = ValuesOfSymbols::new(model, seed);
     let assert_close_expressions = |what: &str, a: &[Expr<'_>], b: &[Expr<'_>]| {
         assert_close(what, &state.values_of_expressions(a), &state.values_of_expressions(b), TOLERANCE);
     };
@@ -150,7 +162,7 @@ fn check_dynamics(model: &Model<'_>, seed: u64) {
         .collect();
     assert_close_expressions("momentum", &p, &expected);
     // The reference is ṗ = Ṗ(q, v, t) + M a with τ = M a + h.
-    let rate = momentum::momentum_rate(model, &joints, &v);
+    let rate = momentum::momentum_rate_without_inputs(model, &joints, &v);
     let expected: Vec<_> =
         p.iter().zip(&bias).map(|(p, h)| time_derivative(model.configuration_space(), *p) - *h).collect();
     assert_close_expressions("momentum rate", &rate, &expected);
@@ -161,7 +173,12 @@ fn check_dynamics(model: &Model<'_>, seed: u64) {
 
 /// Checks the power balance: Jacobi's integral `p · v − T + U` changes by the power of the forces minus
 /// `∂L/∂t`.
-fn check_power_balance<'g>(model: &Model<'g>, joints: &[Joint<'g>], tau: &[Expr<'g>], state: &State) {
+fn check_power_balance<'g>(
+    model: &Model<'g>,
+    joints: &[Joint<'g>],
+    tau: &[Expr<'g>],
+    state: &ValuesOfSymbols,
+) {
     let g = model.graph;
     let v = mechanics::velocity_symbols(model);
     let dot_product =
@@ -199,8 +216,8 @@ fn output_expressions<'g>(model: &Model<'g>, name: &str) -> Vec<Expr<'g>> {
 
 /// Checks that output velocities are the rates of output positions, and output accelerations the rates of
 /// velocities, each in the axes in which the output is expressed.
-fn check_outputs(model: &Model<'_>, seed: u64) {
-    let state = State::new(model, seed);
+fn check_rates_of_outputs(model: &Model<'_>, seed: u64) {
+    let state = ValuesOfSymbols::new(model, seed);
     let assert_rate_of_output = |rate: &str, of: &str| {
         let slope = state.numeric_rates_of_expressions(model, &output_expressions(model, of));
         assert_close(
@@ -217,12 +234,12 @@ fn check_outputs(model: &Model<'_>, seed: u64) {
     for k in 4..=6 {
         assert_rate_of_output(&format!("d{k}"), &format!("w{k}"));
     }
-    let vector_output = |name: &str| {
+    let vector_output_values = |name: &str| {
         <[f64; 3]>::try_from(state.values_of_expressions(&output_expressions(model, name))).expect("a vector")
     };
-    let w = vector_output("w4");
+    let w = vector_output_values("w4");
     for axis in ["x4", "y4", "z4"] {
-        let e = vector_output(axis);
+        let e = vector_output_values(axis);
         let turning = [w[1] * e[2] - w[2] * e[1], w[2] * e[0] - w[0] * e[2], w[0] * e[1] - w[1] * e[0]];
         assert_close(
             axis,
@@ -249,17 +266,20 @@ proptest! {
     #![proptest_config(property_test_config(32))]
 
     #[test]
-    fn lagrange_and_recursive_algorithms_agree(world in random_worlds(), seed in 0_u64..1000) {
-        with_model(&world.world_source(), |_, model| check_dynamics(model, seed));
+    fn lagrange_and_recursive_algorithms_agree(world in random_element_mechanisms(), seed in 0_u64..1000) {
+        check_model_or_panic(&world.element_mechanism_source(), |_, model|
+            compare_dynamics_with_lagrange(model, seed));
     }
 
     #[test]
-    fn place_derivatives_agree_with_their_velocities(world in random_worlds(), seed in 0_u64..1000) {
-        with_model(&world.world_source(), |_, model| check_outputs(model, seed));
+    fn place_derivatives_agree_with_their_velocities(world in random_element_mechanisms(),
+        seed in 0_u64..1000) {
+        check_model_or_panic(&world.element_mechanism_source(), |_, model| check_rates_of_outputs(model,
+            seed));
     }
 
     #[test]
-    fn outline_after_an_error_has_the_correct_signatures(world in random_worlds()) {
-        with_model(&world.world_source(), check_outline_signatures);
+    fn outline_after_an_error_has_the_correct_signatures(world in random_element_mechanisms()) {
+        check_model_or_panic(&world.element_mechanism_source(), check_outline_signatures);
     }
 }

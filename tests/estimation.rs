@@ -22,11 +22,11 @@ with_common_fields! {
 
     /// Load that swings and rotates on a ball joint, with a gyroscope and an accelerometer.
     #[mechanism(gravity = -9.81 * z, derivatives)]
-    struct Load {}
+    struct LoadWithInertialSensors {}
 
     /// Load on a ball joint with a gyroscope, an accelerometer and a compass.
     #[mechanism(gravity = -9.81 * z, derivatives)]
-    struct InstrumentedLoad {
+    struct LoadWithCompass {
         #[output(ground.x, resolved_in = load)]
         compass: Vector,
     }
@@ -49,7 +49,7 @@ struct Belief {
 /// Runs one period of the iterated extended Kalman filter. The correction is linearised again at its own
 /// result until the result changes no more, which finds the most likely state also from a distant prediction
 /// (Bell and Cathey, *The iterated Kalman filter update as a Gauss-Newton method*, 1993).
-fn update_belief<M, const NY: usize>(m: &M, belief: &mut Belief, y: &SVector<f64, NY>)
+fn predict_and_correct_belief<M, const NY: usize>(m: &M, belief: &mut Belief, y: &SVector<f64, NY>)
 where
     M: Derivatives<4, 3, 0, Scalar = f64> + OutputDerivatives<4, 3, 0, NY, Scalar = f64>,
 {
@@ -86,7 +86,7 @@ where
 }
 
 /// Returns approximately normal random numbers: each is the sum of twelve uniform numbers (Irwin and Hall).
-fn normal_vector<const N: usize>(random: &mut Random, variance: f64) -> SVector<f64, N> {
+fn random_gaussian_vector<const N: usize>(random: &mut Random, variance: f64) -> SVector<f64, N> {
     SVector::from_fn(|_, _| (0..12).map(|_| random.uniform_number(0.5)).sum::<f64>() * variance.sqrt())
 }
 
@@ -108,17 +108,17 @@ where
     let u = SVector::from([]);
     let mut q = m.integrate(&m.neutral(), &[0.4, -0.3, 0.7].into());
     let mut v: SVector<f64, 3> = [0.5, 0.8, 1.5].into();
-    let error = normal_vector::<6>(random, off * off);
+    let error = random_gaussian_vector::<6>(random, off * off);
     let (dq, dv) = discrete::split(&error);
     let mut belief =
         Belief { q: m.integrate(&q, &-dq), v: v - dv, spread: SMatrix::identity() * (off * off) };
     for _ in 0..(duration / PERIOD) as usize {
         (q, v) = discrete::step(m, &Rk4::step(PERIOD), 0.0, &q, &v, &u).unwrap();
-        v += normal_vector::<3>(random, gusts);
+        v += random_gaussian_vector::<3>(random, gusts);
         let a = m.forward_dynamics(0.0, &q, &v, &SVector::zeros());
         let y: SVector<f64, NY> =
-            m.outputs(0.0, &q, &v, &a, &u) + normal_vector::<NY>(random, gusts / GUSTS * NOISE);
-        update_belief(m, &mut belief, &y);
+            m.outputs(0.0, &q, &v, &a, &u) + random_gaussian_vector::<NY>(random, gusts / GUSTS * NOISE);
+        predict_and_correct_belief(m, &mut belief, &y);
     }
     let left = discrete::stacked(&m.difference(&belief.q, &q), &(v - belief.v));
     (left, belief, q)
@@ -130,7 +130,7 @@ where
 fn filter_estimates_a_load_on_a_ball_joint() {
     for seed in 0..5 {
         let (left, ..) =
-            run_estimation_filter::<_, 9>(&InstrumentedLoad {}, &mut Random::new(seed), 0.3, 2.0, 0.0);
+            run_estimation_filter::<_, 9>(&LoadWithCompass {}, &mut Random::new(seed), 0.3, 2.0, 0.0);
         assert!(left.amax() < 1e-3, "{seed}: {left}");
     }
 }
@@ -142,7 +142,7 @@ fn heading_is_unobservable_without_a_compass() {
     for seed in 0..5 {
         let off = 0.3;
         let (left, belief, q) =
-            run_estimation_filter::<_, 6>(&Load {}, &mut Random::new(seed), off, 2.0, 0.0);
+            run_estimation_filter::<_, 6>(&LoadWithInertialSensors {}, &mut Random::new(seed), off, 2.0, 0.0);
         let attitude = UnitQuaternion::from_quaternion([q[0], q[1], q[2], q[3]].into());
         let up = attitude.inverse_transform_vector(&Vector3::z());
         let turned = left.fixed_rows::<3>(0).into_owned();
@@ -161,13 +161,8 @@ fn filter_errors_agree_with_the_covariance() {
     const RUNS: u64 = 30;
     let mut sum = 0.0;
     for seed in 0..RUNS {
-        let (left, belief, _) = run_estimation_filter::<_, 9>(
-            &InstrumentedLoad {},
-            &mut Random::new(100 + seed),
-            0.1,
-            1.0,
-            GUSTS,
-        );
+        let (left, belief, _) =
+            run_estimation_filter::<_, 9>(&LoadWithCompass {}, &mut Random::new(100 + seed), 0.1, 1.0, GUSTS);
         sum += left.dot(&(belief.spread.try_inverse().unwrap() * left));
     }
     // The mean of 30 chi-square values with six degrees of freedom is within 3.3 standard deviations in 99.9

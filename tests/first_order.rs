@@ -65,7 +65,7 @@ fn tabulated_fighter() -> Fighter<f64> {
     Fighter { mass: 900.0, area: 12.0, arm: 0.8, lag: 0.7, lift, power: 3e3, sensed: 0.1 }
 }
 
-struct Case {
+struct FighterCase {
     t: f64,
     q: SVector<f64, 7>,
     v: SVector<f64, 8>,
@@ -73,7 +73,7 @@ struct Case {
     u: SVector<f64, 2>,
 }
 
-fn random_fighter_cases() -> Vec<Case> {
+fn random_fighter_cases() -> Vec<FighterCase> {
     let mut random = Random::new(11);
     let random_case = |k: usize| {
         let turn: SVector<f64, 4> = random.random_vector::<4>(1.0).normalize();
@@ -82,7 +82,7 @@ fn random_fighter_cases() -> Vec<Case> {
         v[0] += 60.0;
         v[2] += 3.0 * k as f64;
         v[6] = 4000.0 + 100.0 * v[6];
-        Case {
+        FighterCase {
             t: random.uniform_number(2.0),
             q,
             v,
@@ -114,7 +114,7 @@ fn first_order_states_are_named_after_the_velocities() {
 fn forward_dynamics_inverts_inverse_dynamics() {
     let fighter = tabulated_fighter();
     let whole = fighter.extended();
-    for Case { t, q, v, a, .. } in random_fighter_cases() {
+    for FighterCase { t, q, v, a, .. } in random_fighter_cases() {
         let tau = whole.inverse_dynamics(t, &q, &v, &a);
         let back = whole.forward_dynamics(t, &q, &v, &tau);
         assert_close_relative_to_largest("accelerations and rates", back.as_slice(), a.as_slice(), 1e-12);
@@ -126,7 +126,7 @@ fn forward_dynamics_inverts_inverse_dynamics() {
 #[test]
 fn first_order_rates_equal_their_declared_expressions() {
     let fighter = tabulated_fighter();
-    for Case { t, q, v, u, .. } in random_fighter_cases() {
+    for FighterCase { t, q, v, u, .. } in random_fighter_cases() {
         let now = fighter.with_states(&[v[6], v[7]].into());
         let own = v.fixed_rows::<6>(0).into_owned();
         let whole = fighter.extended();
@@ -152,7 +152,7 @@ fn first_order_rates_equal_their_declared_expressions() {
 fn first_order_derivatives_agree_with_differences() {
     let fighter = tabulated_fighter();
     let whole = fighter.extended();
-    for Case { t, q, v, a, u } in random_fighter_cases() {
+    for FighterCase { t, q, v, a, u } in random_fighter_cases() {
         let tau = whole.inverse_dynamics(t, &q, &v, &a);
         let displaced_configuration = |by| whole.integrate(&q, &by);
         let mut still = STEP;
@@ -177,18 +177,20 @@ fn first_order_derivatives_agree_with_differences() {
         assert_close_relative_to_largest("∂v̇/∂τ", by_force.as_slice(), by_tau.as_slice(), 1e-9);
 
         let (by_q, by_v) = whole.inverse_dynamics_derivatives(t, &q, &v, &a);
-        let inverse_dynamics_of_whole = |q: &_, v: &_| whole.inverse_dynamics(t, q, v, &a);
+        let inverse_dynamics_of_extended_mechanism = |q: &_, v: &_| whole.inverse_dynamics(t, q, v, &a);
         assert_close_relative_to_largest(
             "∂τ/∂q",
             by_q.as_slice(),
-            derivative_columns(still, |by| inverse_dynamics_of_whole(&displaced_configuration(by), &v))
-                .as_slice(),
+            derivative_columns(still, |by| {
+                inverse_dynamics_of_extended_mechanism(&displaced_configuration(by), &v)
+            })
+            .as_slice(),
             DIFFERENCE,
         );
         assert_close_relative_to_largest(
             "∂τ/∂v",
             by_v.as_slice(),
-            derivative_columns(STEP, |by| inverse_dynamics_of_whole(&q, &(v + by))).as_slice(),
+            derivative_columns(STEP, |by| inverse_dynamics_of_extended_mechanism(&q, &(v + by))).as_slice(),
             DIFFERENCE,
         );
 
@@ -209,7 +211,7 @@ fn first_order_derivatives_agree_with_differences() {
 fn output_derivatives_include_first_order_states() {
     let fighter = tabulated_fighter();
     let whole = fighter.extended();
-    for Case { t, q, v, a, u } in random_fighter_cases() {
+    for FighterCase { t, q, v, a, u } in random_fighter_cases() {
         let outputs_of_extended_mechanism = |v: &_, a: &_, u: &_| whole.outputs(t, &q, v, a, u);
         let found = whole.output_derivatives(t, &q, &v, &a, &u);
         let by_v = derivative_columns(STEP, |by| outputs_of_extended_mechanism(&(v + by), &a, &u));
@@ -276,7 +278,7 @@ fn every_integrator_integrates_first_order_states() {
 slider_crank! {
     /// Slider-crank that is driven by a torque with a lag.
     #[mechanism(gravity = -9.81 * y)]
-    struct Late {
+    struct SliderCrankWithMotorLag {
         lag: f64,
         command: Input,
         #[state(rate = (command - torque) / lag)]
@@ -289,7 +291,7 @@ slider_crank! {
 slider_crank! {
     /// Slider-crank that is driven by a torque that is an input.
     #[mechanism(gravity = -9.81 * y)]
-    struct Prompt {
+    struct SliderCrankWithDirectTorque {
         #[acts(on = main)]
         motor: Torque,
     }
@@ -298,13 +300,18 @@ slider_crank! {
 #[test]
 fn constrained_mechanisms_may_have_first_order_states() {
     let (lag, q) = (0.3, [0.0, 0.0, 0.8]);
-    let late = Late { lag, torque: 0.0 };
+    let late = SliderCrankWithMotorLag { lag, torque: 0.0 };
     let constant_command = |_, _: &_, _: &_| [12.0].into();
     let run =
         simulate(&late.extended()).from(q, [0.0; 4]).inputs(constant_command).duration(1.0).finish().unwrap();
     let lagged_command =
         |t: f64, _: &SVector<f64, 3>, _: &SVector<f64, 3>| [12.0 * (1.0 - (-t / lag).exp())].into();
-    let other = simulate(&Prompt {}).from(q, [0.0; 3]).inputs(lagged_command).duration(1.0).finish().unwrap();
+    let other = simulate(&SliderCrankWithDirectTorque {})
+        .from(q, [0.0; 3])
+        .inputs(lagged_command)
+        .duration(1.0)
+        .finish()
+        .unwrap();
     assert_close_relative_to_largest("q", run.q.as_slice(), other.q.as_slice(), 1e-5);
     assert_close_relative_to_largest("v", run.v.fixed_rows::<3>(0).as_slice(), other.v.as_slice(), 1e-5);
     assert!(other.v[0].abs() > 1.0, "it moves");

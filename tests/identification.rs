@@ -67,7 +67,7 @@ struct Puma {
 
 /// Mechanism with joints of all kinds, bodies away from their joints, and a bead on a wire.
 #[mechanism(gravity = [0.3, -9.7, 0.4], regressor)]
-struct Workshop {
+struct MechanismOfAllJoints {
     mass: f64,
     length: f64,
     #[body(mass = 2 * mass, com = length * x, inertia = cuboid(2 * mass, 0.2, 0.3, 0.4))]
@@ -95,7 +95,7 @@ struct Workshop {
 /// joint. Inertial parameters that move from one body to the next across a universal joint move along both of
 /// its axes.
 #[mechanism(gravity = [0.3, -9.7, 0.4], regressor)]
-struct Slings {
+struct UniversalJointsOnMovingBodies {
     #[body(mass = 0.3, com = -0.3 * z, inertia = sphere(0.3, 0.05))]
     sling: Body,
     #[joint(ground -> sling, about = y)]
@@ -183,8 +183,8 @@ fn regressors_of_parametric_mechanisms_reproduce_dynamics() {
     assert_eq!(check!(Puma, sample_puma_arm()), 36);
     assert_eq!(Puma::BODIES, ["trunk", "upper", "fore", "first", "second", "hand"]);
     assert_eq!(Puma::BASE_PARAMETERS[0], "trunk.zz");
-    check!(Workshop, Workshop { mass: 0.7, length: 0.4 });
-    check!(Slings, Slings {});
+    check!(MechanismOfAllJoints, MechanismOfAllJoints { mass: 0.7, length: 0.4 });
+    check!(UniversalJointsOnMovingBodies, UniversalJointsOnMovingBodies {});
 }
 
 #[test]

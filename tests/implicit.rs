@@ -12,7 +12,7 @@ use support::differences::derivative_columns;
 
 /// Cart with a pendulum, on a stiff spring and dashpot.
 #[mechanism(gravity = -9.81 * y, derivatives, batch)]
-struct Cart {
+struct CartOnStiffSpring {
     #[body(mass = 1)]
     cart: Body,
     #[body(mass = 0.3, com = -0.5 * y)]
@@ -31,7 +31,7 @@ struct Cart {
 
 /// Cart with a pendulum, on a stiff spring and dashpot, with a motor that has a lag.
 #[mechanism(gravity = -9.81 * y, derivatives)]
-struct Late {
+struct CartWithMotorLag {
     lag: f64,
     command: Input,
     #[state(rate = (command - torque) / lag)]
@@ -131,7 +131,7 @@ where
 }
 
 /// Returns the ends of a run under feedback, with generated derivatives and with differences.
-fn run_ends_with_both_derivatives<M, S, const NQ: usize, const NV: usize>(
+fn end_states_with_both_derivatives<M, S, const NQ: usize, const NV: usize>(
     m: &M,
     (q, v): (SVector<f64, NQ>, SVector<f64, NV>),
     method: S,
@@ -166,13 +166,14 @@ fn check_runs_with_differences<M, const NQ: usize, const NV: usize>(
 ) where
     M: Mechanism<NQ, NV, 1, Scalar = f64>,
 {
-    let [known, differences] = run_ends_with_both_derivatives(m, start, Rodas::new().tolerance(1e-8, 1e-10));
+    let [known, differences] =
+        end_states_with_both_derivatives(m, start, Rodas::new().tolerance(1e-8, 1e-10));
     let largest_state_difference =
         |a: &(SVector<f64, NQ>, SVector<f64, NV>), b: &(SVector<f64, NQ>, SVector<f64, NV>)| {
             (a.0 - b.0).amax().max((a.1 - b.1).amax())
         };
     assert!(largest_state_difference(&known, &differences) < 1e-6, "{known:?} and {differences:?}");
-    let [fixed, other] = run_ends_with_both_derivatives(m, start, Rosenbrock::step(4e-5));
+    let [fixed, other] = end_states_with_both_derivatives(m, start, Rosenbrock::step(4e-5));
     assert!(largest_state_difference(&fixed, &other) < 1e-6, "{fixed:?} and {other:?}");
     // The methods have orders 2 and 4.
     assert!(largest_state_difference(&fixed, &known) < 1e-4, "{fixed:?} and {known:?}");
@@ -185,9 +186,9 @@ fn closed_linkage_state(m: &FourBar) -> (SVector<f64, 3>, SVector<f64, 3>) {
 
 #[test]
 fn generated_derivatives_yield_the_same_implicit_motion() {
-    check_runs_with_differences(&Cart {}, ([0.01, 0.4].into(), [0.0, 1.0].into()));
+    check_runs_with_differences(&CartOnStiffSpring {}, ([0.01, 0.4].into(), [0.0, 1.0].into()));
     check_runs_with_differences(
-        &Late { lag: 1e-3, torque: 0.0 }.extended(),
+        &CartWithMotorLag { lag: 1e-3, torque: 0.0 }.extended(),
         ([0.4].into(), [1.0, 0.2].into()),
     );
     let bar = FourBar {};
@@ -200,10 +201,10 @@ fn generated_derivatives_yield_the_same_implicit_motion() {
 
 #[test]
 fn implicit_method_has_order_four() {
-    let late = Late { lag: 0.4, torque: 0.0 };
+    let late = CartWithMotorLag { lag: 0.4, torque: 0.0 };
     let whole = late.extended();
     let end_with_method = |method: Rodas<f64>| {
-        run_ends_with_both_derivatives(&whole, ([0.4].into(), [1.0, 0.2].into()), method)[0]
+        end_states_with_both_derivatives(&whole, ([0.4].into(), [1.0, 0.2].into()), method)[0]
     };
     let end_with_fixed_steps =
         |h: f64| end_with_method(Rodas::new().tolerance(1e6, 1e6).initial_step(h).max_step(h));
@@ -217,14 +218,14 @@ fn implicit_method_has_order_four() {
 #[test]
 fn implicit_method_has_order_four_under_constraints() {
     let start = ([0.0, -1.0].into(), [2.5, 0.0].into());
-    let precise = run_ends_with_both_derivatives(
+    let precise = end_states_with_both_derivatives(
         &ParticleOnCircle {},
         start,
         DormandPrince8::new().tolerance(1e-13, 1e-13),
     )[0];
     let fixed_step_method = |h: f64| Rodas::new().tolerance(1e6, 1e6).initial_step(h).max_step(h);
     let errors_with_step = |h: f64| {
-        run_ends_with_both_derivatives(&ParticleOnCircle {}, start, fixed_step_method(h))
+        end_states_with_both_derivatives(&ParticleOnCircle {}, start, fixed_step_method(h))
             .map(|end| (end.0 - precise.0).norm())
     };
     for (coarse, fine) in errors_with_step(0.05).into_iter().zip(errors_with_step(0.0125)) {
@@ -238,7 +239,7 @@ fn implicit_method_has_order_four_under_constraints() {
 /// steps. The motion changes only by the effect of the clock's rounding on the forces.
 #[test]
 fn large_clock_times_cost_no_extra_steps() {
-    let cart = Cart {};
+    let cart = CartOnStiffSpring {};
     let end_state_from_start_time = |start: f64| {
         let counted = CountingMechanism::<_, true>::new(&cart);
         let run = simulate(&counted).from([0.01, 0.4], [0.0, 1.0]).start_at(start).duration(1.0);
@@ -262,9 +263,10 @@ fn large_clock_times_cost_no_extra_steps() {
 
 #[test]
 fn generated_derivatives_save_two_evaluations_per_velocity() {
-    let [known, differences] = count_step_evaluations(&Cart {}, [0.01, 0.4].into(), [0.0, 1.0].into());
+    let [known, differences] =
+        count_step_evaluations(&CartOnStiffSpring {}, [0.01, 0.4].into(), [0.0, 1.0].into());
     assert_eq!((known, differences - known), (8, 4));
-    let late = Late { lag: 1e-3, torque: 0.0 };
+    let late = CartWithMotorLag { lag: 1e-3, torque: 0.0 };
     let [known, differences] = count_step_evaluations(&late.extended(), [0.4].into(), [1.0, 0.2].into());
     assert_eq!((known, differences - known), (8, 4));
     let bar = FourBar {};
@@ -282,7 +284,7 @@ fn generated_derivatives_save_two_evaluations_per_velocity() {
 
 #[test]
 fn wrappers_forward_unchanged_derivatives() {
-    let (cart, q, v, u) = (Cart {}, [0.01, 0.4].into(), [0.0, 1.0].into(), [0.3].into());
+    let (cart, q, v, u) = (CartOnStiffSpring {}, [0.01, 0.4].into(), [0.0, 1.0].into(), [0.3].into());
     let known = Hooks::acceleration_derivatives(&cart, 0.0, &q, &v, &u);
     assert!(known.is_some());
     assert_eq!(known, Hooks::acceleration_derivatives(&&cart, 0.0, &q, &v, &u));
@@ -292,7 +294,7 @@ fn wrappers_forward_unchanged_derivatives() {
 }
 
 /// Returns `(∂v̇/∂q, ∂v̇/∂v, ∂v̇/∂u)` by central differences of eighth order.
-fn difference_derivatives<M, const NQ: usize, const NV: usize, const NU: usize>(
+fn acceleration_derivatives_by_differences<M, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     t: f64,
     (q, v): (&SVector<f64, NQ>, &SVector<f64, NV>),
@@ -329,14 +331,14 @@ fn check_stabilized_derivatives<
     M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = f64>,
 {
     let u = SVector::repeat(0.7);
-    let initial_offset = |k: usize| 0.01 * (1.0 + k as f64).sin();
+    let state_entry_offset = |k: usize| 0.01 * (1.0 + k as f64).sin();
     let beside = (
-        m.integrate(&state.0, &SVector::from_fn(|k, _| initial_offset(k))),
-        state.1 + SVector::from_fn(|k, _| initial_offset(k + NV)),
+        m.integrate(&state.0, &SVector::from_fn(|k, _| state_entry_offset(k))),
+        state.1 + SVector::from_fn(|k, _| state_entry_offset(k + NV)),
     );
     for (q, v) in [state, beside] {
         let steady = stabilized(m, 12.0);
-        let expected = difference_derivatives(&steady, t, (&q, &v), &u);
+        let expected = acceleration_derivatives_by_differences(&steady, t, (&q, &v), &u);
         let found = steady.acceleration_derivatives(t, &q, &v, &u).unwrap();
         let whole = at(&steady, t).linear_motion(&q, &v, &u);
         let by_hand = (whole.by_q, whole.by_v, whole.by_u);
@@ -378,7 +380,7 @@ fn stabilized_constraints_have_derivatives() {
 /// lane as it moves a single state.
 #[test]
 fn implicit_lanes_equal_single_states() {
-    let cart = Cart {};
+    let cart = CartOnStiffSpring {};
     let lanes = cart.lanes::<4>();
     let splat = Lanes::<f64, 4>::splat;
     let lane_state =

@@ -7,7 +7,7 @@ use support::random::Random;
 
 /// Chain of bodies on ball joints and pins, without branches.
 #[mechanism(gravity = -9.81 * z, derivatives, packed)]
-struct Tail {
+struct UnbranchedChain {
     #[body(mass = 3, com = 0.2 * x, inertia = cuboid(3, 0.4, 0.3, 0.2))]
     a: Body,
     #[joint(ground -> a)]
@@ -33,7 +33,7 @@ struct Tail {
 /// Three different arms whose links are declared in turn, so that the velocities of an arm are not adjacent.
 /// The tail does not move with the neck.
 #[mechanism(gravity = -9.81 * z, derivatives, packed)]
-struct Squid {
+struct ThreeInterleavedArms {
     #[body(mass = 5, com = 0.1 * x + 0.1 * z, inertia = cuboid(5, 0.4, 0.3, 0.2))]
     hull: Body,
     #[joint(ground -> hull)]
@@ -147,6 +147,6 @@ macro_rules! solve_the_equations {
     };
 }
 
-solve_the_equations!(a_chain, Tail, 15);
-solve_the_equations!(limbs_declared_in_turns, Squid, 26);
+solve_the_equations!(a_chain, UnbranchedChain, 15);
+solve_the_equations!(limbs_declared_in_turns, ThreeInterleavedArms, 26);
 solve_the_equations!(limbs_alike_on_a_long_trunk, TwoArmsOnLongNeck, 25);

@@ -10,7 +10,7 @@ const TOLERANCE: f64 = 1e-14;
 
 /// Parameters with names that generated code could use itself, and keywords of Rust.
 #[mechanism(gravity = -g * y)]
-struct Names {
+struct ReservedParameterNames {
     q: f64,
     v: f64,
     a: f64,
@@ -33,14 +33,23 @@ struct Names {
 
 #[test]
 fn field_names_of_all_kinds_compile() {
-    let m = Names { q: 2.0, v: 0.3, a: 0.4, u: 0.1, tau: 0.05, g: 9.81, r#type: 3.0, self_: 0.5 };
-    assert_eq!(Names::CONFIGURATION, ["fn", "loop_"]);
-    assert_eq!(Names::INPUTS, ["match"]);
-    assert_eq!(Names::FRAMES, ["in", "f64x"]);
+    let m = ReservedParameterNames {
+        q: 2.0,
+        v: 0.3,
+        a: 0.4,
+        u: 0.1,
+        tau: 0.05,
+        g: 9.81,
+        r#type: 3.0,
+        self_: 0.5,
+    };
+    assert_eq!(ReservedParameterNames::CONFIGURATION, ["fn", "loop_"]);
+    assert_eq!(ReservedParameterNames::INPUTS, ["match"]);
+    assert_eq!(ReservedParameterNames::FRAMES, ["in", "f64x"]);
     let q = SVector::from([0.0, 0.0]);
     let inertia = 0.15 + 2.0 * 0.25 + 3.0 * 1.5 * 1.5;
     assert_close("inertia", &[m.mass_matrix(&q)[0]], &[inertia], TOLERANCE);
-    let end = m.frame_placement(frame!(Names, "f64x"), &q).translation.vector;
+    let end = m.frame_placement(frame!(ReservedParameterNames, "f64x"), &q).translation.vector;
     assert_close("end", end.as_slice(), &[1.0, 0.0, 0.0], TOLERANCE);
 }
 
@@ -125,7 +134,7 @@ fn expressions_have_their_documented_values() {
 
 /// Plate on a ball joint, which makes all components of its inertia visible in the mass matrix.
 #[mechanism]
-struct Solids {
+struct PlateWithSumOfSolids {
     l: f64,
     w: f64,
     angle: f64,
@@ -139,7 +148,7 @@ struct Solids {
 #[test]
 fn solid_inertias_add_and_rotate() {
     let (l, w, angle, m) = (0.7_f64, 0.2_f64, 0.4_f64, 1.1_f64);
-    let body = Solids { l, w, angle, m };
+    let body = PlateWithSumOfSolids { l, w, angle, m };
     let rod = m * l * l / 12.0;
     let (sin, cos) = angle.sin_cos();
     let block = m / 24.0;
@@ -174,7 +183,7 @@ fn macro_expressions_remain_one_operand() {
 
 /// Structure without degrees of freedom: all its functions have empty arguments and results.
 #[mechanism]
-struct Structure {
+struct StructureWithoutFreedom {
     #[body(mass = 1)]
     beam: Body,
     #[joint(ground.at(2 * y) -> beam)]
@@ -183,12 +192,18 @@ struct Structure {
 
 #[test]
 fn structure_without_joints_compiles() {
-    assert_eq!((Structure::NQ, Structure::NV, Structure::NU), (0, 0, 0));
-    let q = Structure {}.neutral();
-    assert_eq!(Structure {}.potential_energy(&q), 0.0);
-    let beam = Structure {}.frame_placement(frame!(Structure, "beam"), &q).translation.vector;
+    assert_eq!(
+        (StructureWithoutFreedom::NQ, StructureWithoutFreedom::NV, StructureWithoutFreedom::NU),
+        (0, 0, 0)
+    );
+    let q = StructureWithoutFreedom {}.neutral();
+    assert_eq!(StructureWithoutFreedom {}.potential_energy(&q), 0.0);
+    let beam = StructureWithoutFreedom {}
+        .frame_placement(frame!(StructureWithoutFreedom, "beam"), &q)
+        .translation
+        .vector;
     assert_eq!(beam, Vector3::new(0.0, 2.0, 0.0));
-    assert_eq!(Structure {}.forward_dynamics(&q, &q, &q), q);
+    assert_eq!(StructureWithoutFreedom {}.forward_dynamics(&q, &q, &q), q);
 }
 
 /// Checks a slider-crank whose loop is closed by a joint. With the crank at a right angle, the position of
@@ -289,7 +304,7 @@ fn minimum_and_maximum_are_exact() {
 /// Carriage with a buffer that it reaches after a gap, a saturating valve, and a law that is undefined on the
 /// other branch.
 #[mechanism(derivatives)]
-struct Pieces {
+struct CarriageWithPiecewiseLaws {
     gap: f64,
     k: f64,
     least: f64,
@@ -318,7 +333,7 @@ struct Pieces {
 
 #[test]
 fn pieces_of_piecewise_functions_hold_in_their_intervals() {
-    let m = Pieces { gap: 0.5, k: 80.0, least: -0.4, most: 0.6 };
+    let m = CarriageWithPiecewiseLaws { gap: 0.5, k: 80.0, least: -0.4, most: 0.6 };
     let spring_force = |x: f64, v: f64| -m.bias_forces(&[x].into(), &[v].into())[0];
     let valve_force = |v: f64| if v > 0.1 { 0.2 + v } else { 3.0 * v };
     for x in [-0.7_f64, -0.01, 0.2, 0.49, 0.51, 1.4] {

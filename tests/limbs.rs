@@ -200,11 +200,11 @@ fn limb_lanes_agree_for_every_scalar_type() {
         assert!(found.iter().zip(&tau).all(|(x, y)| is_close(*x, *y, tau.amax())));
         assert!(single.mass_matrix(&q32).iter().zip(&m).all(|(x, y)| is_close(*x, *y, m.amax())));
         let [q2, v2, a2] = [q.as_slice(), v.as_slice(), a.as_slice()].map(<[f64]>::to_vec);
-        let lanes_of_entry = |x: &[f64], k: usize| Lanes([x[k], x[k]]);
+        let entry_in_both_lanes = |x: &[f64], k: usize| Lanes([x[k], x[k]]);
         let found = lanes.inverse_dynamics(
-            &SVector::from_fn(|k, _| lanes_of_entry(&q2, k)),
-            &SVector::from_fn(|k, _| lanes_of_entry(&v2, k)),
-            &SVector::from_fn(|k, _| lanes_of_entry(&a2, k)),
+            &SVector::from_fn(|k, _| entry_in_both_lanes(&q2, k)),
+            &SVector::from_fn(|k, _| entry_in_both_lanes(&v2, k)),
+            &SVector::from_fn(|k, _| entry_in_both_lanes(&a2, k)),
         );
         assert!(found.iter().zip(&tau).all(|(x, y)| x[0] == *y && x[1] == *y));
     }
@@ -227,7 +227,7 @@ fn three_finger_lanes_agree() {
 
 /// Identical carts with a spring between two of them: no corresponding force acts on the third.
 #[mechanism(gravity = -9.81 * z)]
-struct Carts {
+struct CartsWithOneSpring {
     #[body(mass = 1)]
     a: Body,
     #[joint(ground -> a, along = x)]
@@ -246,7 +246,7 @@ struct Carts {
 
 #[test]
 fn spring_between_two_of_three_carts_acts_on_those() {
-    let (m, mut random) = (Carts {}, Random::new(5));
+    let (m, mut random) = (CartsWithOneSpring {}, Random::new(5));
     for _ in 0..20 {
         let (q, v): (SVector<f64, 3>, _) = (random.random_vector(0.5), random.random_vector(1.0));
         let pull = 5.0 * (q[1] + 2.0 - q[0] - 1.0);

@@ -11,7 +11,7 @@ fn static_vector_from_array<T: Real, const N: usize>(entries: [T; N]) -> SVector
 }
 
 /// Returns the value of an attribute in the `<limit>` of a joint, searched for as text.
-fn limit_attribute(file: &str, joint: &str, attribute: &str) -> Option<f64> {
+fn limit_attribute_value(file: &str, joint: &str, attribute: &str) -> Option<f64> {
     let from = file.find(&format!("<joint name=\"{joint}\""))?;
     let text = &file[from..];
     let text = &text[..text.find("</joint>")?];
@@ -39,7 +39,7 @@ where
     ];
     for (attribute, limits, none) in all {
         for (name, limit) in M::VELOCITIES.iter().zip(&limits) {
-            let expected = limit_attribute(file, name, attribute);
+            let expected = limit_attribute_value(file, name, attribute);
             assert_eq!(*limit, expected.unwrap_or(none), "{attribute} of {name}");
             found += usize::from(expected.is_some());
         }
@@ -137,7 +137,7 @@ struct Hand<T> {
 }
 
 /// Returns a velocity and an effort with all entries `x`, clamped to the limits, in generic code.
-fn clamp_to_limits<M: Limits<NQ, NV>, const NQ: usize, const NV: usize>(
+fn clamped_velocity_and_effort<M: Limits<NQ, NV>, const NQ: usize, const NV: usize>(
     m: &M,
     x: f64,
 ) -> [SVector<M::Scalar, NV>; 2] {
@@ -165,7 +165,7 @@ fn structs_declare_joint_limits() {
     let single = Hand { reach: 8.0_f32, strength: 4.0 };
     assert_eq!(single.upper_limits(), static_vector_from_array([3.0, f32::INFINITY, f32::INFINITY]));
     assert_eq!(
-        clamp_to_limits(&&single, -5.0),
+        clamped_velocity_and_effort(&&single, -5.0),
         [static_vector_from_array([-0.5, -5.0, -5.0]), [-4.0, -5.0, -5.0].into()]
     );
 }

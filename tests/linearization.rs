@@ -76,7 +76,7 @@ macro_rules! check_differences {
 /// Joints of every kind, springs, dashpots, friction, and inputs on coordinates and bodies; some of the
 /// values are parameters.
 #[mechanism(gravity = 0.3 * x - 0.4 * y - 9.7 * z, derivatives)]
-struct Zoo {
+struct MechanismOfAllJoints {
     mass: f64,
     #[body(mass = 3 * mass, com = 0.05 * x, inertia = cuboid(3 * mass, 0.4, 0.3, 0.5))]
     hub: Body,
@@ -124,12 +124,12 @@ struct Zoo {
 
 #[test]
 fn linearisation_covers_every_joint_and_load() {
-    check_differences!(Zoo { mass: 1.1 }, Zoo, m => m);
+    check_differences!(MechanismOfAllJoints { mass: 1.1 }, MechanismOfAllJoints, m => m);
 }
 
 /// Bodies placed by expressions of coordinates, and an inerter: the recursive algorithms do not apply.
 #[mechanism(gravity = -9.7 * y, derivatives)]
-struct Placed {
+struct BodiesPlacedByCoordinates {
     length: f64,
     phi: Coordinate,
     s: Coordinate,
@@ -154,12 +154,12 @@ struct Placed {
 
 #[test]
 fn linearisation_covers_placed_bodies() {
-    check_differences!(Placed { length: 0.8 }, Placed, m => m);
+    check_differences!(BodiesPlacedByCoordinates { length: 0.8 }, BodiesPlacedByCoordinates, m => m);
 }
 
 /// Pendulum with a driven pivot: every function has the time as its first argument.
 #[mechanism(gravity = -9.7 * y, derivatives)]
-struct Driven {
+struct PendulumOnDrivenPivot {
     amplitude: f64,
     #[point(at = amplitude * cos(3 * t) * y)]
     pivot: Point,
@@ -177,7 +177,8 @@ struct Driven {
 
 #[test]
 fn linearisation_covers_a_driven_pivot() {
-    check_differences!(Driven { amplitude: 0.2 }, Driven, m => at(&m, 0.4_f64), 0.4);
+    check_differences!(PendulumOnDrivenPivot { amplitude: 0.2 }, PendulumOnDrivenPivot, m => at(&m,
+        0.4_f64), 0.4);
 }
 
 /// Panda robot arm whose second finger follows the first.
@@ -277,7 +278,7 @@ fn linearised_cart_pole_has_the_textbook_matrices() {
 
 /// Pendulum that is generic over the scalar type.
 #[mechanism(gravity = -g * y, derivatives)]
-struct Swing<T> {
+struct GenericScalarPendulum<T> {
     g: T,
     length: T,
     #[body(mass = 1, com = -length * y, inertia = cuboid(1, 0.1, length, 0.1))]
@@ -290,7 +291,10 @@ struct Swing<T> {
 
 #[test]
 fn linearisation_agrees_for_all_scalar_types() {
-    let (narrow, wide) = (Swing { g: 9.81_f32, length: 0.4 }, Swing { g: 9.81_f64, length: 0.4 });
+    let (narrow, wide) = (
+        GenericScalarPendulum { g: 9.81_f32, length: 0.4 },
+        GenericScalarPendulum { g: 9.81_f64, length: 0.4 },
+    );
     let mut random = Random::new(22);
     let q = random.random_configuration(&wide);
     let (v, u) = (random.random_vector::<3>(1.0), random.random_vector::<1>(1.0));

@@ -10,7 +10,7 @@ use support::with_common_fields;
 /// Flying body with a load on a ball joint, with a gyroscope, an accelerometer, an altimeter, a current and a
 /// camera.
 #[mechanism(gravity = -9.81 * z, derivatives, sensitivities, batch, prepare)]
-struct Carrier {
+struct FlyingBodyWithSensors {
     mass: f64,
     reach: f64,
     #[body(
@@ -44,7 +44,7 @@ struct Carrier {
 
 /// Pendulum on a driven pivot, with a rate gyroscope on its bob.
 #[mechanism(gravity = -9.81 * y, derivatives)]
-struct Driven {
+struct PendulumOnDrivenPivot {
     rate: f64,
     #[point(at = 0.1 * sin(rate * t) * y)]
     pivot: Point,
@@ -63,7 +63,7 @@ struct Driven {
 /// Carrier with a turntable on a driven arm and a bead, whose outputs are momenta and energies of single
 /// bodies.
 #[mechanism(gravity = -9.81 * z, derivatives)]
-struct Bodies {
+struct CarrierWithBodyOutputs {
     mass: f64,
     #[body(mass = 3, com = 0.1 * x - 0.2 * y, inertia = [[0.3, 0.02, 0], [0.02, 0.4, 0.01], [0, 0.01, 0.5]])]
     hull: Body,
@@ -105,14 +105,14 @@ struct Bodies {
 /// and the parallel-axis theorem gives the moment about another line.
 #[test]
 fn moments_of_inertia_agree_with_kinetic_energies() {
-    let (m, mut random) = (Bodies { mass: 1.7 }, Random::new(15));
+    let (m, mut random) = (CarrierWithBodyOutputs { mass: 1.7 }, Random::new(15));
     let assert_close_values = |found: f64, expected: f64| {
         assert!((found - expected).abs() < 1e-12 * (1.0 + expected.abs()), "{found} {expected}")
     };
     for _ in 0..5 {
         let q: SVector<f64, 9> = random.random_configuration(&m);
-        let place = m.frame_placement(frame!(Bodies, "hull"), &q);
-        let rotation_rates = |w: [f64; 3]| {
+        let place = m.frame_placement(frame!(CarrierWithBodyOutputs, "hull"), &q);
+        let energy_of_rotation = |w: [f64; 3]| {
             let w = linkwork::nalgebra::Vector3::from(w);
             let (own, v) =
                 (place.rotation.inverse() * w, place.rotation.inverse() * w.cross(&place.translation.vector));
@@ -120,9 +120,9 @@ fn moments_of_inertia_agree_with_kinetic_energies() {
             m.kinetic_energy(&q, &v)
         };
         let (x, y, both) = (
-            rotation_rates([1.0, 0.0, 0.0]),
-            rotation_rates([0.0, 1.0, 0.0]),
-            rotation_rates([1.0, 1.0, 0.0]),
+            energy_of_rotation([1.0, 0.0, 0.0]),
+            energy_of_rotation([0.0, 1.0, 0.0]),
+            energy_of_rotation([1.0, 1.0, 0.0]),
         );
         assert_close_values(m.about_x(&q), 2.0 * x);
         assert_close_values(m.of_x_and_y(&q), both - x - y);
@@ -134,7 +134,7 @@ fn moments_of_inertia_agree_with_kinetic_energies() {
 /// centre of mass, a body has the angular momentum `I ω`.
 #[test]
 fn body_momenta_and_energies_add_up() {
-    let (m, mut random) = (Bodies { mass: 1.7 }, Random::new(5));
+    let (m, mut random) = (CarrierWithBodyOutputs { mass: 1.7 }, Random::new(5));
     for _ in 0..5 {
         let (q, v): (SVector<f64, 9>, SVector<f64, 8>) =
             (random.random_configuration(&m), random.random_vector(2.0));
@@ -230,20 +230,21 @@ where
 
 #[test]
 fn measurement_derivatives_agree_with_differences() {
-    let carrier = Carrier { mass: 1.3, reach: 0.4 };
+    let carrier = FlyingBodyWithSensors { mass: 1.3, reach: 0.4 };
     check_output_derivatives(&carrier);
     check_output_derivatives(&carrier.prepare());
-    check_output_derivatives(&Driven { rate: 3.0 });
+    check_output_derivatives(&PendulumOnDrivenPivot { rate: 3.0 });
 }
 
 #[test]
 fn measurement_parameter_derivatives_agree_with_differences() {
     let mut random = Random::new(5);
-    let m = Carrier { mass: 1.3, reach: 0.4 };
-    let q = m.integrate(&Carrier::neutral(&m), &random.random_vector(1.0));
+    let m = FlyingBodyWithSensors { mass: 1.3, reach: 0.4 };
+    let q = m.integrate(&FlyingBodyWithSensors::neutral(&m), &random.random_vector(1.0));
     let (v, a) = (random.random_vector(1.0), random.random_vector(1.0));
-    assert_eq!(Carrier::PARAMETERS, ["mass", "reach"]);
-    let perturbed_mechanism = |d: &SVector<f64, 2>| Carrier { mass: m.mass + d[0], reach: m.reach + d[1] };
+    assert_eq!(FlyingBodyWithSensors::PARAMETERS, ["mass", "reach"]);
+    let perturbed_mechanism =
+        |d: &SVector<f64, 2>| FlyingBodyWithSensors { mass: m.mass + d[0], reach: m.reach + d[1] };
     assert_close_matrices(
         "altitude",
         &m.altitude_by_parameters(&q),
@@ -264,12 +265,12 @@ fn measurement_parameter_derivatives_agree_with_differences() {
 #[test]
 fn output_vector_contains_all_outputs() {
     type All = [&'static str; 11];
-    const NAMES: All = <Carrier as Outputs<11, 9, 2, 11>>::OUTPUTS;
+    const NAMES: All = <FlyingBodyWithSensors as Outputs<11, 9, 2, 11>>::OUTPUTS;
     assert_eq!(NAMES[0], "gyroscope.x");
     assert_eq!(index_of(&NAMES, "current"), Some(7));
     let mut random = Random::new(6);
-    let m = Carrier { mass: 1.3, reach: 0.4 };
-    let q = m.integrate(&Carrier::neutral(&m), &random.random_vector(1.0));
+    let m = FlyingBodyWithSensors { mass: 1.3, reach: 0.4 };
+    let q = m.integrate(&FlyingBodyWithSensors::neutral(&m), &random.random_vector(1.0));
     let (v, a, u) = (random.random_vector(1.0), random.random_vector(1.0), random.random_vector(1.0));
     let all: SVector<f64, 11> = m.outputs(0.0, &q, &v, &a, &u);
     assert_eq!(all.fixed_rows::<3>(3), m.accelerometer(&q, &v, &a));
@@ -295,7 +296,7 @@ with_common_fields! {
 
     /// Two rods on a cart with force elements of every kind.
     #[mechanism(gravity = -9.81 * y)]
-    struct Loaded {
+    struct CartWithAllForceElements {
         #[acts(on = rail, stiffness = 30, free_length = 0.2)]
         coil: Spring,
         #[acts(between = (ground.at(2 * y), second.at(0.6 * y)), stiffness = 12, free_length = 0.5)]
@@ -345,9 +346,9 @@ fn element_powers_equal_energy_rates() {
     let mut random = Random::new(25);
     for _ in 0..20 {
         let (q, v): (SVector<f64, 6>, SVector<f64, 5>) =
-            (random.random_configuration(&Loaded {}), random.random_vector(2.0));
+            (random.random_configuration(&CartWithAllForceElements {}), random.random_vector(2.0));
         let u = random.random_vector(3.0);
-        let m = Loaded {};
+        let m = CartWithAllForceElements {};
         let assert_close_values = |found: f64, expected: f64| {
             assert!((found - expected).abs() < 1e-10 * (1.0 + expected.abs()), "{found} {expected}");
         };
@@ -371,7 +372,7 @@ fn element_powers_equal_energy_rates() {
 
 /// Bracket welded to a wall: a mechanism without degrees of freedom.
 #[mechanism(gravity = -9.81 * y, second_derivatives, momentum_derivatives, batch)]
-struct Bracket {
+struct WeldedBracket {
     #[body(mass = 2, com = 0.5 * x, inertia = rod(2, 1, x))]
     arm: Body,
     #[joint(ground -> arm)]
@@ -385,10 +386,10 @@ struct Bracket {
 #[test]
 fn welded_mechanism_has_reactions_without_motion() {
     let none = SVector::<f64, 0>::zeros();
-    let moment = Bracket {}.moment(&none, &none);
+    let moment = WeldedBracket {}.moment(&none, &none);
     assert!((moment - SVector::from([0.0, 0.0, 2.0 * 9.81 * 0.5])).amax() < 1e-12, "{moment}");
-    let (a, b) = Bracket {}.linearize(&none, &none, &none);
+    let (a, b) = WeldedBracket {}.linearize(&none, &none, &none);
     assert_eq!((a.shape(), b.shape()), ((0, 0), (0, 0)));
-    let (by_q, ..) = Bracket {}.forward_dynamics_derivatives(&none, &none, &none);
+    let (by_q, ..) = WeldedBracket {}.forward_dynamics_derivatives(&none, &none, &none);
     assert_eq!(by_q.shape(), (0, 0));
 }

@@ -17,9 +17,9 @@ struct RobotOfAllMjcfElements;
 struct FreeBodies;
 
 #[mechanism(mjcf = "data/mjcf/coupled.xml")]
-struct Coupled;
+struct FileWithCoupledJoints;
 
-fn check_robot<M, const NQ: usize, const NV: usize, const NU: usize>(robot: &M, name: &str)
+fn compare_robot_with_reference<M, const NQ: usize, const NV: usize, const NU: usize>(robot: &M, name: &str)
 where
     M: Mechanism<NQ, NV, NU, Scalar = f64>,
 {
@@ -79,7 +79,7 @@ fn mjcf_joints_shapes_classes_and_servos_agree_with_mujoco() {
         RobotOfAllMjcfElements::INPUTS,
         ["yaw", "pitch_servo", "reach_velocity", "tilt", "belt", "cord"]
     );
-    check_robot(&RobotOfAllMjcfElements, "everything");
+    compare_robot_with_reference(&RobotOfAllMjcfElements, "everything");
     check_frames!(RobotOfAllMjcfElements, "everything");
 }
 
@@ -87,16 +87,16 @@ fn mjcf_joints_shapes_classes_and_servos_agree_with_mujoco() {
 fn mjcf_flying_bodies_and_scaled_masses_agree_with_mujoco() {
     assert_eq!(FreeBodies::NU, 0);
     assert!((FreeBodies.total_mass() - 7.5).abs() > 1.0, "what stands on the ground moves nothing");
-    check_robot(&FreeBodies, "free_bodies");
+    compare_robot_with_reference(&FreeBodies, "free_bodies");
     check_frames!(FreeBodies, "free_bodies");
 }
 
 #[test]
 fn mjcf_coupled_and_fixed_joints_agree_with_mujoco() {
-    assert_eq!(Coupled::VELOCITIES, ["turn", "left"]);
-    assert_eq!(Coupled::INPUTS, ["squeeze"]);
-    check_robot(&Coupled, "coupled");
-    check_frames!(Coupled, "coupled");
+    assert_eq!(FileWithCoupledJoints::VELOCITIES, ["turn", "left"]);
+    assert_eq!(FileWithCoupledJoints::INPUTS, ["squeeze"]);
+    compare_robot_with_reference(&FileWithCoupledJoints, "coupled");
+    check_frames!(FileWithCoupledJoints, "coupled");
 }
 
 /// Checks tendons in space against MuJoCo: straight, around a ball, around a given side of a cylinder, around
@@ -108,7 +108,7 @@ fn mjcf_spatial_tendons_agree_with_mujoco() {
     struct Cables;
 
     assert_eq!(Cables::INPUTS, ["pull", "elbow", "winch", "thrust", "spin", "reach", "twist"]);
-    check_robot(&Cables, "cables");
+    compare_robot_with_reference(&Cables, "cables");
 }
 
 /// Motors, filters, integrals, cylinders and muscles with their states, and polynomial springs and dampers.
@@ -157,7 +157,7 @@ fn mjcf_fluid_drag_agrees_with_mujoco() {
     #[mechanism(mjcf = "data/mjcf/medium.xml")]
     struct RobotInMedium;
 
-    check_robot(&RobotInMedium, "medium");
+    compare_robot_with_reference(&RobotInMedium, "medium");
 }
 
 /// A connection constrains two points to coincide, a weld constrains two bodies. The out-of-plane conditions
@@ -263,13 +263,13 @@ fn mjcf_options_change_or_omit_elements() {
     let (q, v) = ([0.3, 0.1, 0.2, -0.4].into(), [0.5, -1.0, 2.0, 0.7].into());
     assert_eq!(FileWithIndependentMimics.dissipated_power(&q, &v), 0.0);
     // The inertia of the rotor remains, since it is no passive force.
-    let with_rotor = Coupled.mass_matrix(&[0.0, 0.02].into())[3];
+    let with_rotor = FileWithCoupledJoints.mass_matrix(&[0.0, 0.02].into())[3];
     assert!(with_rotor > 7.5 * 7.5 * 0.01);
 
     // A joint that follows a locked joint is locked, too.
     assert_eq!((FileWithLockedJoints::NV, FileWithLockedJoints::NU), (1, 0));
     let fall = FileWithLockedJoints.bias_forces(&[0.0].into(), &[0.0].into())[0];
-    let there = Coupled.bias_forces(&[0.0, 0.0].into(), &[0.0, 0.0].into())[0];
+    let there = FileWithCoupledJoints.bias_forces(&[0.0, 0.0].into(), &[0.0, 0.0].into())[0];
     assert!((fall / there - 3.7 / 9.81).abs() < 1e-12, "{fall} {there}");
 }
 

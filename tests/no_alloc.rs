@@ -135,7 +135,7 @@ fn generated_functions_do_not_allocate() {
     check_all_functions(&PandaMimic);
     check_all_functions(&Solo12);
     check_all_functions(&Humanoid);
-    check_all_functions(&sample_workshop());
+    check_all_functions(&sample_coordinate_force_mechanism());
     check_all_functions(&Spacecraft {});
     check_all_functions(&OnScrew {});
     check_all_functions(&OnUniversal {});
@@ -144,7 +144,7 @@ fn generated_functions_do_not_allocate() {
     check_kinematics!(Panda, Panda, "panda_hand_tcp");
     check_kinematics!(Solo12, Solo12, "HR_FOOT");
     check_kinematics!(Humanoid, Humanoid, "r_wrist");
-    check_kinematics!(sample_workshop(), Workshop, "tip");
+    check_kinematics!(sample_coordinate_force_mechanism(), CoordinateForceMechanism, "tip");
     check_kinematics!(Spacecraft {}, Spacecraft, "weight");
 }
 
@@ -183,8 +183,9 @@ fn batches_do_not_allocate() {
     }
     let mut v = [0.1; 18 * COUNT];
     let (mut tau, lanes) = ([0.0; 18 * COUNT], m.lanes::<8>());
-    let evaluate_arrays = || lanes.inverse_dynamics_all(0.0, &q, &v, &v, &mut tau).is_ok();
-    assert_eq!(heap_calls(evaluate_arrays), 0, "inverse_dynamics_all");
+    let evaluate_inverse_dynamics_of_arrays =
+        || lanes.inverse_dynamics_all(0.0, &q, &v, &v, &mut tau).is_ok();
+    assert_eq!(heap_calls(evaluate_inverse_dynamics_of_arrays), 0, "inverse_dynamics_all");
     let rollout = Rollout::new(Rk4::step(1e-3), 3);
     let zero_inputs = |_, _, _: &_, _: &_| SVector::zeros();
     let run_rollout = || assert_eq!(lanes.roll_out(&rollout, &mut q, &mut v, zero_inputs, unwatched), Ok(()));
@@ -299,8 +300,12 @@ fn contacts_do_not_allocate() {
     let (u, step) = (SVector::zeros(), TimeStepping::step(0.02));
     let transition_at_state = || discrete::transition(&m, &step, 0.0, &at, &rates, &u).unwrap();
     assert!(transition_at_state().v[2].abs() < 0.2 && heap_calls(transition_at_state) == 0, "transition");
-    let by_parameters = || discrete::by_parameters(&m, &step, 0.0, &at, &rates, &u).is_ok();
-    assert!(by_parameters() && heap_calls(by_parameters) == 0, "by_parameters");
+    let evaluate_step_parameter_derivatives =
+        || discrete::by_parameters(&m, &step, 0.0, &at, &rates, &u).is_ok();
+    assert!(
+        evaluate_step_parameter_derivatives() && heap_calls(evaluate_step_parameter_derivatives) == 0,
+        "by_parameters"
+    );
     assert_eq!(heap_calls(|| contact::impact(&m, 0.0, &at, &rates)), 0, "impact");
     assert_eq!(heap_calls(|| contact::forces(&m, 0.0, &at, &rates, &SVector::zeros(), 1e-3)), 0, "forces");
 }

@@ -356,7 +356,7 @@ fn input_limits_bound_the_optimal_change() {
             InputLimits::around(&u, &-reach, &reach.map(|x| x.min(0.7))).expect("they are consistent");
         let (mut policy, mut to_go) = (Policy::zeros(), Value::zeros());
         backward_within(&step, &cost, 0.0, &limits, &mut policy, &mut to_go).expect("it is convex");
-        let total_cost_change = |du: &SVector<f64, 2>| cost.u.dot(du) + 0.5 * du.dot(&(cost.uu * du));
+        let cost_change_of_inputs = |du: &SVector<f64, 2>| cost.u.dot(du) + 0.5 * du.dot(&(cost.uu * du));
         let mut best = f64::INFINITY;
         for choice in 0..9 {
             let at = [choice % 3, choice / 3];
@@ -369,20 +369,20 @@ fn input_limits_bound_the_optimal_change() {
             }
             let Some(du) = system.lu().solve(&right) else { continue };
             if du.iter().all(|x| x.is_finite()) && (limits.clamp(&du) - du).amax() < 1e-12 {
-                best = best.min(total_cost_change(&du));
+                best = best.min(cost_change_of_inputs(&du));
             }
         }
         assert!(
-            (total_cost_change(&policy.change) - best).abs() < 1e-12,
+            (cost_change_of_inputs(&policy.change) - best).abs() < 1e-12,
             "{} {best}",
-            total_cost_change(&policy.change)
+            cost_change_of_inputs(&policy.change)
         );
         assert!((policy.expected[0] + policy.expected[1] - best).abs() < 1e-12);
         let held = (0..2).filter(|i| policy.by_q.row(*i).amax() == 0.0).count();
         kinds[held] += 1;
         let dq = random.random_vector::<6>(1e-2);
         let du = policy.inputs(1.0, &dq, &SVector::zeros());
-        let predicted = total_cost_change(&du) + dq.dot(&(cost.qu * du)) + 0.5 * dq.dot(&(cost.qq * dq));
+        let predicted = cost_change_of_inputs(&du) + dq.dot(&(cost.qu * du)) + 0.5 * dq.dot(&(cost.qq * dq));
         assert!((predicted - best - to_go.at(&dq, &SVector::zeros())).abs() < 1e-12);
     }
     assert!(kinds.iter().all(|count| *count > 20), "{kinds:?}");

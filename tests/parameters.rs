@@ -216,24 +216,24 @@ struct Panda;
     regressor, parameters = inertial("panda_link7")
 )]
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Wrist;
+struct PandaWithWristParameters;
 #[mechanism(
     urdf = "../models/urdf/panda.urdf", lock = ["panda_finger_joint1", "panda_finger_joint2"],
     regressor, scalar = f32, parameters = inertial("panda_link7")
 )]
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct SingleWrist;
+struct SinglePrecisionWristParameters;
 
 /// Returns other inertial parameters of a physically consistent body: part of the known body's density, and
 /// two point masses.
 fn physically_consistent_inertial(random: &mut Random, link: &Inertial<f64>) -> Inertial<f64> {
-    let mut point = || {
+    let mut random_point_mass = || {
         Inertial::point(
             link.mass * (0.06 + random.uniform_number(0.05)),
             random.random_vector::<3>(0.06).into(),
         )
     };
-    let (a, b) = (point(), point());
+    let (a, b) = (random_point_mass(), random_point_mass());
     let [x, y, z] = link.com;
     let shifted_inertial =
         |p: Inertial<f64>| Inertial { com: [x + p.com[0], y + p.com[1], z + p.com[2]], ..p };
@@ -343,8 +343,8 @@ macro_rules! one_link {
 
 #[test]
 fn base_parameters_of_a_load_are_written_to_one_link() {
-    one_link!(Wrist, f64, 1e-6);
-    one_link!(SingleWrist, f32, 2e-2);
+    one_link!(PandaWithWristParameters, f64, 1e-6);
+    one_link!(SinglePrecisionWristParameters, f32, 2e-2);
 }
 
 /// Frames of links whose placement is a parameter are at the placement that the parameter states.

@@ -5,7 +5,7 @@ mod random_limbs;
 mod random_robot;
 mod random_tree;
 
-use linkwork_compiler::derive::{Output, Prepared, limb_lanes};
+use linkwork_compiler::derive::{DerivationOutput, PreparedFunctions, limb_lanes};
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::eval::eval;
 use linkwork_compiler::expr::{Expr, Graph, Mat3, Vec3};
@@ -19,13 +19,13 @@ use linkwork_compiler::passes::{
 };
 use linkwork_compiler::syntax::RequestedFunctions;
 use linkwork_compiler::vectorise::{VectorisedMechanism, find_limb_groups};
-use linkwork_compiler::{compile_with_passes, derive_with_options, read_source};
+use linkwork_compiler::{compile_with_passes, derive_with_options, parse_source_and_import};
 use proptest::prelude::*;
 use random_limbs::random_creatures;
 use random_robot::random_robots;
 use random_tree::random_trees;
 use std::path::Path;
-use support::model::{check_model_or_errors, random_symbol_values, with_model};
+use support::model::{check_model_or_panic, check_model_or_return_errors, random_symbol_values};
 use support::random::property_test_config;
 
 /// Tolerance between results with and without passes, relative to the largest entry.
@@ -62,9 +62,9 @@ fn expressions_of_all_model_functions<'g>(
         ("potential energy", vec![energy::potential_energy(model, joints)]),
         ("mass and moment", [vec![mass], moment.0.to_vec()].concat()),
         ("generalized momentum", momentum::generalized_momentum(model, joints, &v)),
-        ("momentum rate", momentum::momentum_rate(model, joints, &v)),
+        ("momentum rate", momentum::momentum_rate_without_inputs(model, joints, &v)),
         ("momentum", frames::spatial_components(&momentum::centroidal_momentum(model, joints, &v))),
-        ("inputs", forces::generalized_forces(model, joints)),
+        ("inputs", forces::generalized_forces_of_inputs(model, joints)),
         ("frames", frame_placements(model, joints)),
     ]
 }
@@ -125,9 +125,10 @@ fn check_forward_dynamics(variant: &Variant<'_>, seed: u64) {
     let solved = eval(&ldl::solve_symmetric(mass, r.clone(), joints), &at);
     assert_near("factorisation", seed, 10.0 * TOLERANCE, &solved, &expected);
     let wrenches = rnea::link_wrenches(model, joints, &v, None);
-    for articulated in
-        [aba::accelerations(model, joints, &r), aba::forward_dynamics(model, joints, wrenches, &tau)]
-    {
+    for articulated in [
+        aba::inverse_mass_times_vector(model, joints, &r),
+        aba::forward_dynamics(model, joints, wrenches, &tau),
+    ] {
         let found = eval(&articulated.expect("no coordinate is coupled"), &at);
         assert_near("articulated bodies", seed, 10.0 * TOLERANCE, &found, &expected);
     }
@@ -135,7 +136,13 @@ fn check_forward_dynamics(variant: &Variant<'_>, seed: u64) {
 
 /// Checks that the generated programs have the same results with and without passes, and no more operations
 /// with passes.
-fn check_passes_preserve_results(name: &str, model: &Model<'_>, new: &Output, old: &Output, tolerance: f64) {
+fn check_passes_preserve_results(
+    name: &str,
+    model: &Model<'_>,
+    new: &DerivationOutput,
+    old: &DerivationOutput,
+    tolerance: f64,
+) {
     for seed in 0..3 {
         let at = random_symbol_values(model, seed);
         for (new, old) in new.functions.iter().zip(&old.functions) {
@@ -171,33 +178,36 @@ const OFF: Passes =
 fn check_prepared_functions(
     name: &str,
     model: &Model<'_>,
-    prepared: &Prepared,
-    old: &Output,
+    prepared: &PreparedFunctions,
+    old: &DerivationOutput,
     tolerance: f64,
 ) {
     for seed in 0..3 {
         let at = random_symbol_values(model, seed);
         let numbers = prepared.numbers.interpret_program(&at);
-        let value_with_prepared = |s| match Quantity::from_symbol(s) {
+        let symbol_value_with_prepared = |s| match Quantity::from_symbol(s) {
             Quantity::Prepared(k) => numbers[k],
             Quantity::Parameter(_) => f64::NAN,
             _ => at(s),
         };
         for (new, old) in prepared.functions.iter().zip(&old.functions) {
-            let (a, b) =
-                (new.program.interpret_program(&value_with_prepared), old.program.interpret_program(&at));
+            let (a, b) = (
+                new.program.interpret_program(&symbol_value_with_prepared),
+                old.program.interpret_program(&at),
+            );
             assert_near(&format!("{name}: {}, prepared", new.name), seed, tolerance, &a, &b);
         }
     }
 }
 
-fn check_robot(name: &str, options: &str) {
+fn check_passes_on_robot(name: &str, options: &str) {
     let parse_tokens = |text: &str| text.parse().expect("the source is Rust");
     let arguments = format!("urdf = \"../models/urdf/{name}.urdf\"{options}");
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let (mut cx, graph) = (Diagnostics::new(), Graph::new());
-    let source = read_source(parse_tokens(&arguments), parse_tokens("pub struct Robot;"), folder, &mut cx)
-        .expect("it is read");
+    let source =
+        parse_source_and_import(parse_tokens(&arguments), parse_tokens("pub struct Robot;"), folder, &mut cx)
+            .expect("it is read");
     let (model, old) = compile_with_passes(&source, &graph, OFF, &mut cx).expect("it compiles");
     for passes in CHOICES {
         let (_, new) = compile_with_passes(&source, &graph, passes, &mut cx).expect("it compiles");
@@ -217,7 +227,7 @@ fn model_passes_preserve_robot_dynamics() {
         ("solo12", ", base = free, inertia = trust"),
         ("simple_humanoid", ", base = free, inertia = trust"),
     ] {
-        check_robot(name, options);
+        check_passes_on_robot(name, options);
     }
 }
 
@@ -232,7 +242,7 @@ fn check_limb_variants(model: &Model<'_>, interacts: bool, seed: u64) {
     let bias = eval(&rnea::inverse_dynamics(model, joints, &v, None), &at);
     let tau = eval(&rnea::inverse_dynamics(model, joints, &v, Some(&a)), &at);
     let expected = eval(&a, &at);
-    let value_with_tau = |s| match Quantity::from_symbol(s) {
+    let symbol_value_with_tau = |s| match Quantity::from_symbol(s) {
         Quantity::Force(k) => tau[k],
         _ => at(s),
     };
@@ -265,7 +275,13 @@ fn check_limb_variants(model: &Model<'_>, interacts: bool, seed: u64) {
             assert_near("mass matrix", seed, TOLERANCE, &found, &mass);
         }
         let found = limb_lanes::forward_dynamics(&limbs, &limbs).expect("no coordinate is coupled");
-        assert_near("forward dynamics", seed, 100.0 * TOLERANCE, &eval(&found, &value_with_tau), &expected);
+        assert_near(
+            "forward dynamics",
+            seed,
+            100.0 * TOLERANCE,
+            &eval(&found, &symbol_value_with_tau),
+            &expected,
+        );
         // The lowered program has the same results.
         let program = lower(&limb_lanes::inverse_dynamics(&limbs, true));
         assert_near("program", seed, TOLERANCE, &program.interpret_program(&at), &tau);
@@ -280,14 +296,15 @@ proptest! {
         let source = creature.creature_source();
         let interacts = source.1.contains(" between");
         // Models with an element between a limb and itself are rejected.
-        let variants = check_model_or_errors(&source, |_, model| check_limb_variants(model, interacts, seed));
+        let variants = check_model_or_return_errors(&source, |_, model| check_limb_variants(model,
+            interacts, seed));
         let refused = variants.is_err();
         prop_assert!(!refused || interacts);
     }
 
     #[test]
     fn noisy_coefficients_cost_no_accuracy_in_passes(robot in random_robots(8), seed in 0_u64..1000) {
-        with_model(&robot.robot_source(), |_, model| check_accuracy_of_variants(model, seed));
+        check_model_or_panic(&robot.robot_source(), |_, model| check_accuracy_of_variants(model, seed));
     }
 }
 
@@ -300,7 +317,7 @@ fn check_accuracy_of_variants(model: &Model<'_>, seed: u64) {
     let mass = eval(&crba::mass_matrix(model, &joints).concat(), &at);
     let tau = eval(&rnea::inverse_dynamics(model, &joints, &v, Some(&a)), &at);
     let expected = eval(&a, &at);
-    let value_with_tau = |s| match Quantity::from_symbol(s) {
+    let symbol_value_with_tau = |s| match Quantity::from_symbol(s) {
         Quantity::Force(k) => tau[k],
         _ => at(s),
     };
@@ -308,8 +325,10 @@ fn check_accuracy_of_variants(model: &Model<'_>, seed: u64) {
     let acceleration_error = |variant: &Model<'_>, joints: &[Joint<'_>]| -> f64 {
         let h = rnea::inverse_dynamics(variant, joints, &v, None);
         let rest = h.iter().enumerate().map(|(k, h)| force_symbol(k) - *h).collect();
-        let found =
-            eval(&ldl::solve_symmetric(crba::mass_matrix(variant, joints), rest, joints), &value_with_tau);
+        let found = eval(
+            &ldl::solve_symmetric(crba::mass_matrix(variant, joints), rest, joints),
+            &symbol_value_with_tau,
+        );
         found.iter().zip(&expected).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max)
     };
     let (n, own) = (model.nv(), acceleration_error(model, &joints));
@@ -348,7 +367,7 @@ proptest! {
 
     #[test]
     fn passes_preserve_the_dynamics_of_all_forms(tree in random_trees(4), seed in 0_u64..1000) {
-        with_model(&tree.tree_source(), |_, model| check_variants(model, seed));
+        check_model_or_panic(&tree.tree_source(), |_, model| check_variants(model, seed));
     }
 
     /// Robots of pins and sleeves, most of them parallel to the joint before.
@@ -379,13 +398,14 @@ proptest! {
             );
         }
         let item = format!("pub struct Arm {{ {fields} }}");
-        with_model(&("gravity = [1, 2, -9]".to_string(), item), |_, model| check_variants(model, seed));
+        check_model_or_panic(&("gravity = [1, 2, -9]".to_string(), item), |_, model| check_variants(model,
+            seed));
     }
 
     #[test]
     fn program_passes_preserve_functions(tree in random_trees(6), seed in 0_u64..1000) {
         let _ = seed;
-        with_model(&tree.tree_source(), |_, model| {
+        check_model_or_panic(&tree.tree_source(), |_, model| {
             let mut cx = Diagnostics::new();
             let prepare = RequestedFunctions { prepare: true, ..RequestedFunctions::default() };
             let new = derive_with_options(model, prepare, Passes::default(), &mut cx);
@@ -410,9 +430,9 @@ fn parallel_joints_need_no_rotations() {
              {body} c: Body, #[joint(b.at(0.4 * x) -> c, about = {c})] third: Pin }}"
         )
     };
-    let joints_in_common_axes = |axes| {
+    let rotating_joints_in_common_axes = |axes| {
         let mut turning = Vec::new();
-        with_model(&(String::new(), arm_with_axes(axes)), |_, model| {
+        check_model_or_panic(&(String::new(), arm_with_axes(axes)), |_, model| {
             let variant =
                 variants_in_common_axes(&model_variants(model, Passes::default())).into_iter().next();
             let Some(variant) = variant else { return };
@@ -424,11 +444,11 @@ fn parallel_joints_need_no_rotations() {
         });
         turning
     };
-    assert_eq!(joints_in_common_axes(["z", "z", "z"]), [false, false, false]);
-    assert_eq!(joints_in_common_axes(["z", "y", "-y"]), [true, false, false]);
+    assert_eq!(rotating_joints_in_common_axes(["z", "z", "z"]), [false, false, false]);
+    assert_eq!(rotating_joints_in_common_axes(["z", "y", "-y"]), [true, false, false]);
     // The third joint rotates relative to the axes that the first two share.
-    assert_eq!(joints_in_common_axes(["z", "z", "x"]), [false, false, true]);
-    assert_eq!(joints_in_common_axes(["z", "y", "z"]), [false; 0]);
+    assert_eq!(rotating_joints_in_common_axes(["z", "z", "x"]), [false, false, true]);
+    assert_eq!(rotating_joints_in_common_axes(["z", "y", "z"]), [false; 0]);
 }
 
 /// Checks that nearly zero lengths between axes, as exporters write them, are not multiplied by large masses
@@ -449,9 +469,13 @@ fn nearly_zero_lengths_cost_no_accuracy() {
     let parse_tokens = |text: &str| text.parse().expect("the source is Rust");
     let (mut cx, graph) = (Diagnostics::new(), Graph::new());
     let item = format!("pub struct Robot {{ {fields} }}");
-    let source =
-        read_source(parse_tokens("gravity = -9.81 * y"), parse_tokens(&item), Path::new(""), &mut cx)
-            .expect("it is read");
+    let source = parse_source_and_import(
+        parse_tokens("gravity = -9.81 * y"),
+        parse_tokens(&item),
+        Path::new(""),
+        &mut cx,
+    )
+    .expect("it is read");
     let (model, old) = compile_with_passes(&source, &graph, OFF, &mut cx).expect("it compiles");
     for passes in CHOICES {
         let (_, new) = compile_with_passes(&source, &graph, passes, &mut cx).expect("it compiles");

@@ -6,10 +6,10 @@ use linkwork::simulate::Sample;
 use linkwork::{Real, at, mechanism, simulate};
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
-use linkwork_compiler::{compile, read_source};
+use linkwork_compiler::{compile, parse_source_and_import};
 use std::path::Path;
 use support::compare::{assert_close, assert_same_dynamics};
-use support::mechanisms::Hoop;
+use support::mechanisms::BeadOnRotatingHoop;
 use support::random::Random;
 
 const TOLERANCE: f64 = 1e-11;
@@ -106,16 +106,16 @@ fn prepared_mechanism_equals_the_mechanism() {
             centroidal_momentum_matrix(&q);
             centroidal_momentum_bias(&q, &v);
         }
-        let powers_of_motion = |m: [f64; 4]| m;
+        let powers_and_total_mass = |m: [f64; 4]| m;
         assert_close(
             "powers",
-            &powers_of_motion([
+            &powers_and_total_mass([
                 prepared.dissipated_power(&q, &v),
                 prepared.control_power(&q, &v, &u),
                 prepared.disturbance_power(&q, &v),
                 prepared.total_mass(),
             ]),
-            &powers_of_motion([
+            &powers_and_total_mass([
                 arm.dissipated_power(&q, &v),
                 arm.control_power(&q, &v, &u),
                 arm.disturbance_power(&q, &v),
@@ -158,15 +158,15 @@ fn prepared_loaded_robot_equals_the_robot() {
 
 #[test]
 fn prepared_driven_mechanism_equals_the_mechanism() {
-    let hoop = Hoop { g: 9.81, m: 0.1, radius: 0.3, spin: 8.0 };
+    let hoop = BeadOnRotatingHoop { g: 9.81, m: 0.1, radius: 0.3, spin: 8.0 };
     let prepared = hoop.prepare();
     for t in [0.0, 0.4] {
         assert_same_dynamics(&at(&prepared, t), &at(&hoop, t), 5, TOLERANCE);
     }
-    let end_coordinate = |run: Result<Sample<f64, 1, 1, 0>, Error>| run.expect("it arrives").q[0];
+    let final_coordinate = |run: Result<Sample<f64, 1, 1, 0>, Error>| run.expect("it arrives").q[0];
     let one = simulate(&prepared).from([0.5], [0.0]).duration(1.0).finish();
     let other = simulate(&hoop).from([0.5], [0.0]).duration(1.0).finish();
-    assert!((end_coordinate(one) - end_coordinate(other)).abs() < 1e-9);
+    assert!((final_coordinate(one) - final_coordinate(other)).abs() < 1e-9);
 }
 
 /// Four-bar linkage with all options that request functions.
@@ -239,9 +239,9 @@ const MAIN: [&str; 4] = ["inverse_dynamics", "bias_forces", "mass_matrix", "forw
 fn main_and_prepared_counts(arguments: &str, item: &str) -> ([usize; 4], Option<[usize; 4]>) {
     let parse_tokens = |text: &str| text.parse().expect("the source is Rust");
     let (mut cx, graph) = (Diagnostics::new(), Graph::new());
-    let source = read_source(parse_tokens(arguments), parse_tokens(item), Path::new(""), &mut cx);
+    let source = parse_source_and_import(parse_tokens(arguments), parse_tokens(item), Path::new(""), &mut cx);
     let Some((_, output)) = source.and_then(|s| compile(&s, &graph, &mut cx)) else {
-        panic!("{}", cx.messages().join("\n"));
+        panic!("{}", cx.full_message_texts().join("\n"));
     };
     let main_operation_counts = |functions: &[linkwork_compiler::derive::Function]| {
         MAIN.map(|name| {

@@ -19,8 +19,10 @@ fn load_robot_reference_record(robot: &str) -> Record {
 }
 
 /// Checks all functions of the trait `Mechanism` for which the tables have reference values.
-fn check_dynamics<M, const NQ: usize, const NV: usize, const NU: usize>(robot: &M, name: &str)
-where
+fn compare_dynamics_with_reference<M, const NQ: usize, const NV: usize, const NU: usize>(
+    robot: &M,
+    name: &str,
+) where
     M: Mechanism<NQ, NV, NU, Scalar = f64>,
 {
     for (i, case) in load_robot_reference_record(name).records_with_key("cases").iter().enumerate() {
@@ -152,7 +154,7 @@ macro_rules! robot {
 
             #[test]
             fn robot_dynamics_agree_with_pinocchio() {
-                check_dynamics(&$robot, $name);
+                compare_dynamics_with_reference(&$robot, $name);
             }
 
             #[test]

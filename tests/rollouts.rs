@@ -85,7 +85,7 @@ fn command_of_state<const N: usize>(
 }
 
 /// Integrates the states one after another with the integrators for single states, as a reference.
-fn one_by_one<S: Lockstep<f64>>(method: S, steps: usize, states: &mut States, count: usize) {
+fn integrate_one_by_one<S: Lockstep<f64>>(method: S, steps: usize, states: &mut States, count: usize) {
     for k in 0..count {
         let (q, v) = (state_column::<6>(&states.q, count, k), state_column::<6>(&states.v, count, k));
         let mut state = State { t: 0.5, q, v };
@@ -108,7 +108,7 @@ fn rollout_equals_integrator_runs_of_each_state() {
     fn check_lockstep_equals_sequential<S: Lockstep<f64> + Copy>(method: S) {
         for count in [1, 5, 8, 19] {
             let mut expected = States::new(&Ur5, count);
-            one_by_one(method, 50, &mut expected, count);
+            integrate_one_by_one(method, 50, &mut expected, count);
             let rollout = Rollout::new(method, 50).from_time(0.5);
             let assert_bitwise_equal_states = |found: &States, what: &str| {
                 assert_eq!(bits_of_numbers(&found.q), bits_of_numbers(&expected.q), "{what}, {count} states");
@@ -202,16 +202,16 @@ fn state_arrays_are_evaluated_state_by_state() {
         lanes.mass_matrix_all(0.0, &states.q, &mut mass).expect("lengths");
         // The reference uses one lane, since the function of a single state evaluates identical limbs in
         // lanes.
-        let single_lane = |x: SVector<f64, 18>| x.map(|x| Lanes([x]));
+        let to_single_lane = |x: SVector<f64, 18>| x.map(|x| Lanes([x]));
         for k in 0..count {
             let (q, v) = (
                 &state_column::<19>(&states.q, count, k).map(|q| Lanes([q])),
-                &single_lane(state_column(&states.v, count, k)),
+                &to_single_lane(state_column(&states.v, count, k)),
             );
-            let expected = Solo12.inverse_dynamics_lanes(q, v, &single_lane(state_column(&a, count, k)));
-            assert_eq!(single_lane(state_column(&tau, count, k)), expected);
+            let expected = Solo12.inverse_dynamics_lanes(q, v, &to_single_lane(state_column(&a, count, k)));
+            assert_eq!(to_single_lane(state_column(&tau, count, k)), expected);
             assert_eq!(
-                single_lane(state_column(&back, count, k)),
+                to_single_lane(state_column(&back, count, k)),
                 Solo12.forward_dynamics_lanes(q, v, &expected)
             );
             let m = Solo12.mass_matrix_lanes::<1>(q).map(|m| m[0]);

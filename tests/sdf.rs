@@ -65,7 +65,7 @@ fn two_axis_and_screw_joints_of_sdf_are_converted() {
     #[mechanism(sdf = "data/sdf/joints.sdf", inputs = none)]
     struct File;
     #[mechanism(gravity = 0.1 * y - 9.8 * z)]
-    struct Written {
+    struct HandWrittenMechanism {
         #[body]
         cross_1: Body,
         #[body(mass = 2, com = -0.3 * z, inertia = diagonal(0.1, 0.2, 0.15))]
@@ -88,8 +88,8 @@ fn two_axis_and_screw_joints_of_sdf_are_converted() {
         grease: Dashpot,
     }
 
-    assert_eq!(File::VELOCITIES, Written::VELOCITIES);
-    assert_same_dynamics(&File, &Written {}, 20, TOLERANCE);
+    assert_eq!(File::VELOCITIES, HandWrittenMechanism::VELOCITIES);
+    assert_same_dynamics(&File, &HandWrittenMechanism {}, 20, TOLERANCE);
 }
 
 /// A joint to a link that already has a parent closes a loop. Joints connect frames on links, and frames have
@@ -99,7 +99,7 @@ fn sdf_joint_to_a_second_parent_closes_a_loop() {
     #[mechanism(sdf = "data/sdf/linkage.sdf")]
     struct File;
     #[mechanism(gravity = -9.81 * z)]
-    struct Written {
+    struct HandWrittenMechanism {
         #[body(mass = 0.3, com = 0.15 * z, inertia = diagonal(0.002, 0.002, 0.0001))]
         crank: Body,
         #[body(mass = 0.8, com = 0.4 * z, inertia = diagonal(0.02, 0.02, 0.0004))]
@@ -127,10 +127,13 @@ fn sdf_joint_to_a_second_parent_closes_a_loop() {
         d_close: Pin,
     }
 
-    assert_eq!((File::NV, File::NC, File::NS), (Written::NV, Written::NC, Written::NS));
-    assert_eq!(File::VELOCITIES, Written::VELOCITIES);
+    assert_eq!(
+        (File::NV, File::NC, File::NS),
+        (HandWrittenMechanism::NV, HandWrittenMechanism::NC, HandWrittenMechanism::NS)
+    );
+    assert_eq!(File::VELOCITIES, HandWrittenMechanism::VELOCITIES);
     assert_eq!(File::INPUTS, ["a_drive", "b_elbow", "c_swing"]);
-    let (file, written) = (File, Written {});
+    let (file, written) = (File, HandWrittenMechanism {});
     let q = file.assemble(&[0.1, 0.4, -0.2].into(), &[0]).unwrap();
     assert!(written.constraint_residuals(&q).amax() < 1e-10);
     let (v, tau) = ([0.4, -0.3, 0.2].into(), [0.1, 0.2, 0.3].into());
@@ -139,7 +142,7 @@ fn sdf_joint_to_a_second_parent_closes_a_loop() {
     assert_close("accelerations", a.as_slice(), b.as_slice(), TOLERANCE);
     assert_close("multipliers", forces.as_slice(), twins.as_slice(), TOLERANCE);
     let end = file.frame_placement(frame!(File, "coupler::end"), &q).translation;
-    let bar = written.frame_placement(frame!(Written, "bar"), &q);
+    let bar = written.frame_placement(frame!(HandWrittenMechanism, "bar"), &q);
     let tip = bar.rotation * SVector::from([0.0, 0.0, 0.8]) + bar.translation.vector;
     assert_close("frame", end.vector.as_slice(), tip.as_slice(), TOLERANCE);
 }

@@ -6,7 +6,7 @@ use linkwork::prelude::{Rk4, SemiImplicitEuler};
 use linkwork::{Derivatives, Sensitivities, mechanism};
 use support::compare::assert_close_relative_to_largest;
 use support::differences::derivative_at_zero;
-use support::mechanisms::Hoop;
+use support::mechanisms::BeadOnRotatingHoop;
 use support::random::Random;
 
 /// Tolerance of derivatives against finite differences.
@@ -139,7 +139,7 @@ fn loaded_robot_sensitivities_agree_with_differences() {
 /// parameters are known.
 #[test]
 fn driven_hoop_sensitivities_have_closed_forms() {
-    let hoop = Hoop { g: 9.81, m: 0.1, radius: 0.3, spin: 8.0 };
+    let hoop = BeadOnRotatingHoop { g: 9.81, m: 0.1, radius: 0.3, spin: 8.0 };
     let (q, v, tau) = ([0.5].into(), [2.0].into(), [0.02].into());
     let (sin, cos) = 0.5_f64.sin_cos();
     let by = hoop.forward_dynamics_by_parameters(0.7, &q, &v, &tau);
@@ -257,8 +257,8 @@ fn step_sensitivities_agree_with_differences() {
     assert_eq!(<Flyer as Sensitivities<_, _, _, _>>::PARAMETERS, Flyer::PARAMETERS);
     check_step_parameter_derivatives("flyer, Rk4", flyer, &Rk4::step(0.1), of_flyer);
     check_step_parameter_derivatives("flyer, Euler", flyer, &SemiImplicitEuler::step(0.1), of_flyer);
-    let hoop = Hoop { g: 9.7, m: 0.4, radius: 0.3, spin: 5.0 };
-    let of_hoop: [fn(&mut Hoop) -> &mut f64; 4] =
+    let hoop = BeadOnRotatingHoop { g: 9.7, m: 0.4, radius: 0.3, spin: 5.0 };
+    let of_hoop: [fn(&mut BeadOnRotatingHoop) -> &mut f64; 4] =
         [|m| &mut m.g, |m| &mut m.m, |m| &mut m.radius, |m| &mut m.spin];
     check_step_parameter_derivatives("hoop, Rk4", hoop, &Rk4::step(0.05), of_hoop);
     let gimbal = Gimbal { g: 9.7, m: 1.3, l: 0.6 };
@@ -269,7 +269,7 @@ fn step_sensitivities_agree_with_differences() {
 
 #[test]
 fn invalid_period_is_an_error() {
-    let hoop = Hoop { g: 9.7, m: 0.4, radius: 0.3, spin: 5.0 };
+    let hoop = BeadOnRotatingHoop { g: 9.7, m: 0.4, radius: 0.3, spin: 5.0 };
     for period in [0.0, -0.1, f64::NAN, f64::INFINITY] {
         let found =
             discrete::by_parameters(&hoop, &Rk4::step(period), 0.0, &[0.1].into(), &[0.0].into(), &[].into());

@@ -166,16 +166,16 @@ fn table_derivatives_agree_with_high_order_differences() {
                 let none = SVector::<f64, 2>::zeros();
                 let by_q = derivative_at_zero(STEP, |s| acceleration_at_change(&(unit * s), &zero, &none));
                 let by_v = derivative_at_zero(STEP, |s| acceleration_at_change(&zero, &(unit * s), &none));
-                let acceleration_rows = |j: usize| state.fixed_view::<6, 1>(6, j).into_owned();
+                let acceleration_derivative_column = |j: usize| state.fixed_view::<6, 1>(6, j).into_owned();
                 assert_close_relative_to_largest(
                     "by q",
-                    acceleration_rows(k).as_slice(),
+                    acceleration_derivative_column(k).as_slice(),
                     by_q.as_slice(),
                     DIFFERENCE,
                 );
                 assert_close_relative_to_largest(
                     "by v",
-                    acceleration_rows(6 + k).as_slice(),
+                    acceleration_derivative_column(6 + k).as_slice(),
                     by_v.as_slice(),
                     DIFFERENCE,
                 );

@@ -9,17 +9,17 @@ mod random;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::mechanism::Units;
-use linkwork_compiler::{compile, expand, read_source};
+use linkwork_compiler::{compile, expand, parse_source_and_import};
 use std::path::Path;
 
 /// Returns the units of a mechanism, or its error messages.
 pub fn units_of_mechanism(arguments: &str, item: &str) -> Result<Units, Vec<String>> {
     let mut cx = Diagnostics::new();
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../models");
-    let source = read_source(arguments.parse().unwrap(), item.parse().unwrap(), &folder, &mut cx);
+    let source = parse_source_and_import(arguments.parse().unwrap(), item.parse().unwrap(), &folder, &mut cx);
     let graph = Graph::new();
     let model = source.and_then(|source| compile(&source, &graph, &mut cx).map(|(model, _)| model));
-    model.map(|model| model.units).ok_or_else(|| cx.messages())
+    model.map(|model| model.units).ok_or_else(|| cx.full_message_texts())
 }
 
 /// Returns the source of a mechanism with a body on a sleeve and one on a pin, and with the additional fields
@@ -522,7 +522,7 @@ fn unit_inference_of_large_structs_terminates() {
     let energies: String =
         (0..n).map(|k| format!("#[energy(1.5 * {})] e{k}: Potential, ", product_of_parameters(k))).collect();
     let mut cx = Diagnostics::new();
-    let source = read_source(
+    let source = parse_source_and_import(
         "".parse().unwrap(),
         machine_source(&format!("{fields}{energies}")).parse().unwrap(),
         Path::new(""),
@@ -531,5 +531,5 @@ fn unit_inference_of_large_structs_terminates() {
     if let Some(source) = source {
         linkwork_compiler::resolve::build_model(&source.mechanism.description, &Graph::new(), &mut cx);
     }
-    assert_eq!(cx.messages(), Vec::<String>::new());
+    assert_eq!(cx.full_message_texts(), Vec::<String>::new());
 }

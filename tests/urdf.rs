@@ -10,10 +10,10 @@ const TOLERANCE: f64 = 1e-13;
 
 /// Mechanism in which every joint is independent, without passive forces, and with changed gravity.
 #[mechanism(urdf = "data/urdf/everything.urdf", mimic = independent, passive = ignore, gravity = x - 9 * z)]
-struct Everything;
+struct RobotOfAllUrdfElements;
 
 #[mechanism(gravity = x - 9 * z)]
-struct Written {
+struct HandWrittenMechanism {
     #[body(mass = 7, inertia = diagonal(1, 1, 1))]
     root: Body,
     #[body(
@@ -61,22 +61,24 @@ struct Written {
 /// order in the file.
 #[test]
 fn urdf_joints_are_ordered_depth_first() {
-    assert_eq!(Everything::INPUTS, ["b_turn", "c_follow", "z_slide"]);
-    assert_eq!(Everything::VELOCITIES, Written::VELOCITIES);
-    assert_eq!(Everything::CONFIGURATION, Written::CONFIGURATION);
+    assert_eq!(RobotOfAllUrdfElements::INPUTS, ["b_turn", "c_follow", "z_slide"]);
+    assert_eq!(RobotOfAllUrdfElements::VELOCITIES, HandWrittenMechanism::VELOCITIES);
+    assert_eq!(RobotOfAllUrdfElements::CONFIGURATION, HandWrittenMechanism::CONFIGURATION);
     assert_eq!(
-        Everything::VELOCITIES[6..],
+        RobotOfAllUrdfElements::VELOCITIES[6..],
         ["b_turn", "c_follow", "z_slide", "d_skate.x", "d_skate.y", "d_skate.angle"]
     );
 }
 
 #[test]
 fn urdf_file_and_struct_have_equal_dynamics() {
-    assert_same_dynamics(&Everything, &Written {}, 20, TOLERANCE);
-    let q = Random::new(18).random_configuration(&Everything);
-    for (name, placement) in Everything::FRAMES.iter().zip(Everything.frame_placements(&q)) {
-        let k = Written::FRAMES.iter().position(|frame| frame == name).expect("the same names");
-        let expected = Written {}.frame_placements(&q)[k].to_homogeneous();
+    assert_same_dynamics(&RobotOfAllUrdfElements, &HandWrittenMechanism {}, 20, TOLERANCE);
+    let q = Random::new(18).random_configuration(&RobotOfAllUrdfElements);
+    for (name, placement) in
+        RobotOfAllUrdfElements::FRAMES.iter().zip(RobotOfAllUrdfElements.frame_placements(&q))
+    {
+        let k = HandWrittenMechanism::FRAMES.iter().position(|frame| frame == name).expect("the same names");
+        let expected = HandWrittenMechanism {}.frame_placements(&q)[k].to_homogeneous();
         assert_close(name, placement.to_homogeneous().as_slice(), expected.as_slice(), TOLERANCE);
     }
 }
@@ -96,7 +98,7 @@ fn passive_forces_have_the_coefficients_of_the_file() {
     for speed in [0.0, 0.01, 1.0] {
         let q = random.random_configuration(&FileWithPassiveForces);
         let v = random.random_vector(speed);
-        let mut expected = Everything.bias_forces(&q, &v);
+        let mut expected = RobotOfAllUrdfElements.bias_forces(&q, &v);
         expected[6] += 0.3 * v[6] + 0.1 * (v[6] / 0.02).tanh();
         expected[8] += 2.0 * v[8];
         assert_close(
@@ -131,14 +133,15 @@ fn mimic_joint_has_factor_and_offset() {
         // The coordinates are seven of the free joint, then b_turn.
         let q_free = q.insert_row(8, 0.2 - 0.5 * q[7]);
         let (v_free, a_free) = (relation * v, relation * a);
-        let mass_matrix = relation.transpose() * Everything.mass_matrix(&q_free) * relation;
+        let mass_matrix = relation.transpose() * RobotOfAllUrdfElements.mass_matrix(&q_free) * relation;
         assert_close(
             "mass matrix",
             RobotWithMimicJoints.mass_matrix(&q).as_slice(),
             mass_matrix.as_slice(),
             TOLERANCE,
         );
-        let forces = relation.transpose() * Everything.inverse_dynamics(&q_free, &v_free, &a_free);
+        let forces =
+            relation.transpose() * RobotOfAllUrdfElements.inverse_dynamics(&q_free, &v_free, &a_free);
         assert_close(
             "forces",
             RobotWithMimicJoints.inverse_dynamics(&q, &v, &a).as_slice(),
@@ -149,9 +152,12 @@ fn mimic_joint_has_factor_and_offset() {
         assert_close("forward dynamics", acceleration.as_slice(), a.as_slice(), 1e-11);
         let energies =
             [RobotWithMimicJoints.kinetic_energy(&q, &v), RobotWithMimicJoints.potential_energy(&q)];
-        let expected = [Everything.kinetic_energy(&q_free, &v_free), Everything.potential_energy(&q_free)];
+        let expected = [
+            RobotOfAllUrdfElements.kinetic_energy(&q_free, &v_free),
+            RobotOfAllUrdfElements.potential_energy(&q_free),
+        ];
         assert_close("energies", &energies, &expected, TOLERANCE);
-        let momentum = relation.transpose() * Everything.generalized_momentum(&q_free, &v_free);
+        let momentum = relation.transpose() * RobotOfAllUrdfElements.generalized_momentum(&q_free, &v_free);
         assert_close(
             "p",
             RobotWithMimicJoints.generalized_momentum(&q, &v).as_slice(),
@@ -159,16 +165,17 @@ fn mimic_joint_has_factor_and_offset() {
             TOLERANCE,
         );
 
-        let (link, link_free) = (frame!(RobotWithMimicJoints, "follower"), frame!(Everything, "follower"));
+        let (link, link_free) =
+            (frame!(RobotWithMimicJoints, "follower"), frame!(RobotOfAllUrdfElements, "follower"));
         let jacobian = RobotWithMimicJoints.frame_jacobian(link, &q);
-        let expected = Everything.frame_jacobian(link_free, &q_free) * relation;
+        let expected = RobotOfAllUrdfElements.frame_jacobian(link_free, &q_free) * relation;
         assert_close("Jacobian", jacobian.as_slice(), expected.as_slice(), TOLERANCE);
         let acceleration = RobotWithMimicJoints.frame_acceleration(link, &q, &v, &a);
-        let expected = Everything.frame_acceleration(link_free, &q_free, &v_free, &a_free);
+        let expected = RobotOfAllUrdfElements.frame_acceleration(link_free, &q_free, &v_free, &a_free);
         assert_close("acceleration", acceleration.as_slice(), expected.as_slice(), TOLERANCE);
         let push = RobotWithMimicJoints.generalized_forces(&q, &SVector::from([2.0, 3.0]));
-        let expected =
-            relation.transpose() * Everything.generalized_forces(&q_free, &SVector::from([2.0, 0.0, 3.0]));
+        let expected = relation.transpose()
+            * RobotOfAllUrdfElements.generalized_forces(&q_free, &SVector::from([2.0, 0.0, 3.0]));
         assert_close("inputs", push.as_slice(), expected.as_slice(), TOLERANCE);
     }
 }
@@ -192,10 +199,12 @@ fn locked_joints_of_a_free_base_leave_the_coordinates() {
         TOLERANCE,
     );
     let q = RobotOnFreeBase.neutral();
-    let mut q_free = Everything.neutral();
+    let mut q_free = RobotOfAllUrdfElements.neutral();
     q_free[8] = 0.2;
     let follower = RobotOnFreeBase.frame_placement(frame!(RobotOnFreeBase, "follower"), &q).to_homogeneous();
-    let expected = Everything.frame_placement(frame!(Everything, "follower"), &q_free).to_homogeneous();
+    let expected = RobotOfAllUrdfElements
+        .frame_placement(frame!(RobotOfAllUrdfElements, "follower"), &q_free)
+        .to_homogeneous();
     assert_close("follower", follower.as_slice(), expected.as_slice(), TOLERANCE);
 }
 
@@ -215,10 +224,10 @@ fn urdf_mechanism_supports_single_precision() {
     )]
     struct SinglePrecisionRobot;
 
-    let q = Random::new(21).random_configuration(&Everything);
+    let q = Random::new(21).random_configuration(&RobotOfAllUrdfElements);
     let v = SVector::<f64, 12>::repeat(0.5);
     let forces = SinglePrecisionRobot.inverse_dynamics(&q.cast::<f32>(), &v.cast::<f32>(), &v.cast::<f32>());
-    let expected = Everything.inverse_dynamics(&q, &v, &v);
+    let expected = RobotOfAllUrdfElements.inverse_dynamics(&q, &v, &v);
     assert_close("forces", forces.cast::<f64>().as_slice(), expected.as_slice(), 1e-5);
 }
 
@@ -314,25 +323,30 @@ fn kinematics_without_inertia_equal_those_of_the_robot() {
     #[mechanism(urdf = "data/urdf/everything.urdf", mimic = independent, inertia = none)]
     struct EverythingWithoutInertia;
 
-    assert_eq!(EverythingWithoutInertia::FRAMES, Everything::FRAMES);
+    assert_eq!(EverythingWithoutInertia::FRAMES, RobotOfAllUrdfElements::FRAMES);
     let mut random = Random::new(24);
     for _ in 0..10 {
-        let q = random.random_configuration(&Everything);
+        let q = random.random_configuration(&RobotOfAllUrdfElements);
         let (v, a) = (random.random_vector(1.0), random.random_vector(1.0));
-        for (one, other) in
-            EverythingWithoutInertia.frame_placements(&q).iter().zip(Everything.frame_placements(&q))
+        for (one, other) in EverythingWithoutInertia
+            .frame_placements(&q)
+            .iter()
+            .zip(RobotOfAllUrdfElements.frame_placements(&q))
         {
             let expected = other.to_homogeneous();
             assert_close("placement", one.to_homogeneous().as_slice(), expected.as_slice(), TOLERANCE);
         }
-        let (one, other) = (frame!(EverythingWithoutInertia, "plate"), frame!(Everything, "plate"));
-        let (jacobian, expected) =
-            (EverythingWithoutInertia.frame_jacobian(one, &q), Everything.frame_jacobian(other, &q));
+        let (one, other) =
+            (frame!(EverythingWithoutInertia, "plate"), frame!(RobotOfAllUrdfElements, "plate"));
+        let (jacobian, expected) = (
+            EverythingWithoutInertia.frame_jacobian(one, &q),
+            RobotOfAllUrdfElements.frame_jacobian(other, &q),
+        );
         assert_close("Jacobian", jacobian.as_slice(), expected.as_slice(), TOLERANCE);
         let acceleration = EverythingWithoutInertia.frame_acceleration(one, &q, &v, &a);
-        let expected = Everything.frame_acceleration(other, &q, &v, &a);
+        let expected = RobotOfAllUrdfElements.frame_acceleration(other, &q, &v, &a);
         assert_close("acceleration", acceleration.as_slice(), expected.as_slice(), TOLERANCE);
-        assert_eq!(EverythingWithoutInertia.integrate(&q, &v), Everything.integrate(&q, &v));
+        assert_eq!(EverythingWithoutInertia.integrate(&q, &v), RobotOfAllUrdfElements.integrate(&q, &v));
     }
 }
 
@@ -407,7 +421,7 @@ struct ParallelogramWithGazeboJoint;
 
 /// Parallelogram linkage whose loop is closed by a ball constraint of Drake.
 #[mechanism(urdf = "data/urdf/parallelogram_drake.urdf", loops = close)]
-struct BallConstraint;
+struct ParallelogramWithBallConstraint;
 
 /// Checks a linkage against the motion of a parallelogram, whose coupler moves in translation. By the
 /// principle of virtual work its inertia about the cranks is `2 (I + m c²) + M l²`, and gravity acts on it
@@ -437,5 +451,5 @@ fn urdf_joint_closes_a_loop() {
 fn extensions_of_other_tools_close_loops() {
     check_parallelogram!(ParallelogramWithLoopJoint);
     check_parallelogram!(ParallelogramWithGazeboJoint);
-    check_parallelogram!(BallConstraint);
+    check_parallelogram!(ParallelogramWithBallConstraint);
 }

@@ -71,14 +71,14 @@ with_text! { WHEELS, Wheels {
 } }
 
 /// Returns the tokens of a mechanism with parameters replaced by numbers.
-fn tokens_with_numbers(tokens: TokenStream, values: &[(&str, f64)]) -> TokenStream {
+fn tokens_with_substituted_parameters(tokens: TokenStream, values: &[(&str, f64)]) -> TokenStream {
     let replace_by_number = |token: TokenTree| match &token {
         TokenTree::Ident(name) => match values.iter().find(|(known, _)| name == known) {
             Some((_, value)) => format!("({value:e})").parse().unwrap(),
             None => TokenStream::from(token),
         },
         TokenTree::Group(group) => {
-            let inner = tokens_with_numbers(group.stream(), values);
+            let inner = tokens_with_substituted_parameters(group.stream(), values);
             TokenTree::from(Group::new(group.delimiter(), inner)).into()
         }
         _ => token.into(),
@@ -91,7 +91,7 @@ fn compiler_messages((values, elements): (&[(&str, f64)], &str), change: (&str, 
     let values: Vec<(&str, f64)> =
         values.iter().map(|(name, x)| (*name, if *name == change.0 { change.1 } else { *x })).collect();
     // No parameter of these mechanisms has the name of an attribute.
-    let elements = tokens_with_numbers(elements.parse().unwrap(), &values);
+    let elements = tokens_with_substituted_parameters(elements.parse().unwrap(), &values);
     let item = quote::quote!(struct Machine { #elements });
     linkwork_compiler::check_mechanism("gravity = -9.81 * y".parse().unwrap(), item, Path::new(""))
 }

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 /// Source text of a mechanism: the arguments of its attribute, and the struct.
-pub struct Source {
+pub struct MechanismSourceText {
     /// Arguments in the parentheses of `#[mechanism]`.
     pub arguments: String,
     /// Text of the struct with its attributes.
@@ -34,7 +34,7 @@ fn axis_index_of_joint(k: usize) -> usize {
 
 /// Returns a chain of `n` links on pins about changing axes, in the struct `name`. With `symbolic`, mass,
 /// length, centre of mass and inertia of each link are parameters; otherwise they are numbers.
-pub fn chain_source(name: &str, n: usize, symbolic: bool) -> Source {
+pub fn chain_source(name: &str, n: usize, symbolic: bool) -> MechanismSourceText {
     let mut item = format!("pub struct {name} {{\n");
     let mut parent = "ground".to_string();
     for k in 1..=n {
@@ -54,11 +54,11 @@ pub fn chain_source(name: &str, n: usize, symbolic: bool) -> Source {
         parent = format!("link{k}.at({l} * z)");
     }
     item.push('}');
-    Source { arguments: "gravity = -9.81 * z".to_string(), item }
+    MechanismSourceText { arguments: "gravity = -9.81 * z".to_string(), item }
 }
 
 /// Returns the expression of a struct with parameters that is the same robot as the chain with numbers.
-pub fn chain_value_expression(name: &str, n: usize) -> String {
+pub fn chain_struct_expression(name: &str, n: usize) -> String {
     let fields = (1..=n).flat_map(|k| link_parameter_names(k, n).zip(link_values_text(k)));
     let fields: Vec<String> = fields.map(|(name, number)| format!("{name}: {number}")).collect();
     format!("{name} {{ {} }}", fields.join(", "))

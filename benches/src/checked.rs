@@ -21,7 +21,7 @@ pub struct CompiledRuntime {
 
 /// Cost of compiling a mechanism with rustc: time and memory.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Cost {
+pub struct CompilationCost {
     /// Processor time of the compilation.
     pub time: Duration,
     /// Peak resident memory of the compilation, bytes.
@@ -44,7 +44,7 @@ impl CompiledRuntime {
 }
 
 /// Runs rustc on a library of this text, with the options of the dev profile, up to its metadata.
-pub fn measure_rustc_check(library: &CompiledRuntime, text: &str) -> Result<Cost, Box<dyn Error>> {
+pub fn measure_rustc_check(library: &CompiledRuntime, text: &str) -> Result<CompilationCost, Box<dyn Error>> {
     let folder = std::env::temp_dir().join(format!("linkwork-expansion-{}", std::process::id()));
     std::fs::create_dir_all(&folder)?;
     let file = folder.join("expanded.rs");
@@ -72,8 +72,8 @@ pub fn measure_rustc_check(library: &CompiledRuntime, text: &str) -> Result<Cost
 }
 
 /// Waits for a process, and returns its cost as far as the system reports it.
-fn wait_for_process(child: &mut Child) -> Result<Cost, Box<dyn Error>> {
-    let mut cost = Cost::default();
+fn wait_for_process(child: &mut Child) -> Result<CompilationCost, Box<dyn Error>> {
+    let mut cost = CompilationCost::default();
     loop {
         cost = time_and_memory_of_process(child.id()).unwrap_or(cost);
         if let Some(status) = child.try_wait()? {
@@ -84,7 +84,7 @@ fn wait_for_process(child: &mut Child) -> Result<Cost, Box<dyn Error>> {
 }
 
 /// Returns processor time and peak memory of a process so far.
-fn time_and_memory_of_process(process: u32) -> Option<Cost> {
+fn time_and_memory_of_process(process: u32) -> Option<CompilationCost> {
     let status = read_to_string(format!("/proc/{process}/status")).ok()?;
     let memory = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
     let kilobytes: f64 = memory.split_whitespace().next()?.parse().ok()?;
@@ -92,5 +92,5 @@ fn time_and_memory_of_process(process: u32) -> Option<Cost> {
     let stat = read_to_string(format!("/proc/{process}/stat")).ok()?;
     let words = stat.rsplit(')').next()?.split_whitespace().skip(11).take(2);
     let ticks: f64 = words.filter_map(|word| word.parse::<f64>().ok()).sum();
-    Some(Cost { time: Duration::from_secs_f64(ticks / TICKS), memory: kilobytes * 1e3 })
+    Some(CompilationCost { time: Duration::from_secs_f64(ticks / TICKS), memory: kilobytes * 1e3 })
 }

@@ -1,6 +1,6 @@
 //! Mechanisms with many elements between points, and with bodies placed by expressions of coordinates.
 
-use crate::chains::Source;
+use crate::chains::MechanismSourceText;
 use std::fmt::Write;
 
 /// Number of links of the arm with springs between its links.
@@ -8,7 +8,7 @@ const LINKS: usize = 4;
 
 /// Returns an arm of spatial pins with this number of springs between points of the ground and points of its
 /// links.
-pub fn arm_with_springs_source(springs: usize) -> Source {
+pub fn arm_with_springs_source(springs: usize) -> MechanismSourceText {
     let mut item = "pub struct Arm {\n".to_string();
     let mut parent = "ground".to_string();
     for k in 0..LINKS {
@@ -32,12 +32,12 @@ pub fn arm_with_springs_source(springs: usize) -> Source {
         );
     }
     item.push('}');
-    Source { arguments: "gravity = -9.81 * z".to_string(), item }
+    MechanismSourceText { arguments: "gravity = -9.81 * z".to_string(), item }
 }
 
 /// Returns a planar chain of particles on rods; the position of each particle is an expression of the angles
 /// of all rods before it.
-pub fn particle_chain_source(particles: usize) -> Source {
+pub fn particle_chain_source(particles: usize) -> MechanismSourceText {
     let mut item = "pub struct Placed {\n".to_string();
     let (mut x, mut z) = (Vec::new(), Vec::new());
     for k in 1..=particles {
@@ -54,5 +54,5 @@ pub fn particle_chain_source(particles: usize) -> Source {
         );
     }
     item.push('}');
-    Source { arguments: "gravity = -9.81 * z".to_string(), item }
+    MechanismSourceText { arguments: "gravity = -9.81 * z".to_string(), item }
 }

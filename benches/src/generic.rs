@@ -8,14 +8,14 @@
 mod spatial;
 mod urdf;
 
-pub use spatial::{ArticulatedInertia, Inertia, Placement, Spatial};
+pub use spatial::{ArticulatedInertia, Inertia, Placement, SpatialVector};
 pub use urdf::Options;
 
 use nalgebra::{DMatrix, Matrix3, Matrix6xX, Quaternion, Unit, UnitQuaternion, Vector3, Vector6};
 
 /// Motion that a joint allows for a link relative to its parent.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Motion {
+pub enum JointMotion {
     /// Rotation of the link about an axis.
     Turn(Unit<Vector3<f64>>),
     /// Translation of the link along an axis.
@@ -24,39 +24,39 @@ pub enum Motion {
     Free,
 }
 
-impl Motion {
+impl JointMotion {
     /// Returns the number of entries of `q` and of `v`.
     fn entry_counts_of_q_and_v(self) -> (usize, usize) {
         match self {
-            Motion::Turn(_) | Motion::Slide(_) => (1, 1),
-            Motion::Free => (7, 6),
+            JointMotion::Turn(_) | JointMotion::Slide(_) => (1, 1),
+            JointMotion::Free => (7, 6),
         }
     }
 
     /// Returns column `k` of the motion subspace of a joint.
-    fn subspace_column(self, k: usize) -> Spatial {
+    fn subspace_column(self, k: usize) -> SpatialVector {
         match self {
-            Motion::Turn(axis) => Spatial::new(Vector3::zeros(), *axis),
-            Motion::Slide(axis) => Spatial::new(*axis, Vector3::zeros()),
-            Motion::Free => Spatial::unit_vector(k),
+            JointMotion::Turn(axis) => SpatialVector::new(Vector3::zeros(), *axis),
+            JointMotion::Slide(axis) => SpatialVector::new(*axis, Vector3::zeros()),
+            JointMotion::Free => SpatialVector::unit_vector(k),
         }
     }
 
     /// Returns the joint twist: the motion subspace times the joint velocities.
-    fn twist_from_rates(self, rates: &[f64]) -> Spatial {
+    fn twist_from_rates(self, rates: &[f64]) -> SpatialVector {
         match self {
-            Motion::Turn(axis) => Spatial::new(Vector3::zeros(), *axis * rates[0]),
-            Motion::Slide(axis) => Spatial::new(*axis * rates[0], Vector3::zeros()),
-            Motion::Free => Spatial::from_slice(rates),
+            JointMotion::Turn(axis) => SpatialVector::new(Vector3::zeros(), *axis * rates[0]),
+            JointMotion::Slide(axis) => SpatialVector::new(*axis * rates[0], Vector3::zeros()),
+            JointMotion::Free => SpatialVector::from_slice(rates),
         }
     }
 
     /// Returns the placement of the link in the joint's frame.
     fn placement_in_joint_frame(self, q: &[f64]) -> Placement {
         match self {
-            Motion::Turn(axis) => Placement::new(rotation_about_axis(&axis, q[0]), Vector3::zeros()),
-            Motion::Slide(axis) => Placement::new(Matrix3::identity(), *axis * q[0]),
-            Motion::Free => {
+            JointMotion::Turn(axis) => Placement::new(rotation_about_axis(&axis, q[0]), Vector3::zeros()),
+            JointMotion::Slide(axis) => Placement::new(Matrix3::identity(), *axis * q[0]),
+            JointMotion::Free => {
                 let quaternion = Quaternion::new(q[6], q[3], q[4], q[5]);
                 let rotation = UnitQuaternion::new_unchecked(quaternion).to_rotation_matrix();
                 Placement::new(rotation.into_inner(), Vector3::new(q[0], q[1], q[2]))
@@ -90,7 +90,7 @@ pub struct Link {
     /// Placement of the joint's frame in the frame of the parent link.
     pub placement: Placement,
     /// Type of motion of the link relative to the joint's frame.
-    pub motion: Motion,
+    pub motion: JointMotion,
     /// Index in `q` of the link's first coordinate.
     pub q: usize,
     /// Index in `v` of the link's first velocity.
@@ -129,13 +129,13 @@ pub struct Model {
 #[derive(Clone, Debug)]
 struct LinkIntermediateResults {
     placement: Placement,
-    twist: Spatial,
-    acceleration: Spatial,
-    wrench: Spatial,
+    twist: SpatialVector,
+    acceleration: SpatialVector,
+    wrench: SpatialVector,
     composite: Inertia,
     articulated: ArticulatedInertia,
     /// `U = IA s`, `1 / D` and `u = τ − s · pA` of a joint with one degree of freedom.
-    column: Spatial,
+    column: SpatialVector,
     inverse: f64,
     force: f64,
 }
@@ -154,12 +154,12 @@ impl Model {
     pub fn allocate_workspace(&self) -> Workspace {
         let initial_link_data = |link: &Link| LinkIntermediateResults {
             placement: link.placement,
-            twist: Spatial::zero(),
-            acceleration: Spatial::zero(),
-            wrench: Spatial::zero(),
+            twist: SpatialVector::zero(),
+            acceleration: SpatialVector::zero(),
+            wrench: SpatialVector::zero(),
             composite: link.inertia,
             articulated: ArticulatedInertia::from_rigid_inertia(&link.inertia),
-            column: Spatial::zero(),
+            column: SpatialVector::zero(),
             inverse: 0.0,
             force: 0.0,
         };
@@ -205,7 +205,7 @@ impl Model {
             let own = link.motion.twist_from_rates(&v[link.v..link.v + nv]);
             let (parent_twist, parent_acceleration) = match link.parent {
                 Some(p) => (before[p].twist, before[p].acceleration),
-                None => (Spatial::zero(), Spatial::new(-self.gravity, Vector3::zeros())),
+                None => (SpatialVector::zero(), SpatialVector::new(-self.gravity, Vector3::zeros())),
             };
             d.twist = d.placement.twist_to_child(&parent_twist) + own;
             d.acceleration = d.placement.twist_to_child(&parent_acceleration) + d.twist.cross(&own);
@@ -256,7 +256,7 @@ impl Model {
         self.compute_placements(data, q);
         for (k, link) in self.links.iter().enumerate() {
             let own = link.motion.twist_from_rates(&v[link.v..]);
-            let parent = link.parent.map_or(Spatial::zero(), |p| data.0[p].twist);
+            let parent = link.parent.map_or(SpatialVector::zero(), |p| data.0[p].twist);
             let d = &mut data.0[k];
             d.twist = d.placement.twist_to_child(&parent) + own;
             d.acceleration = d.twist.cross(&own);
@@ -268,8 +268,8 @@ impl Model {
             let (inertia, wrench) = match link.motion {
                 // A free joint transmits no force, so that the parent has no articulated inertia of this
                 // link.
-                Motion::Free => (None, Spatial::from_slice(&tau[link.v..])),
-                Motion::Turn(_) | Motion::Slide(_) => {
+                JointMotion::Free => (None, SpatialVector::from_slice(&tau[link.v..])),
+                JointMotion::Turn(_) | JointMotion::Slide(_) => {
                     let s = link.motion.subspace_column(0);
                     d.column = d.articulated.wrench_of_acceleration(&s);
                     d.inverse = 1.0 / s.dot(&d.column);
@@ -295,17 +295,17 @@ impl Model {
             let d = &mut rest[0];
             let parent = match link.parent {
                 Some(p) => before[p].acceleration,
-                None => Spatial::new(-self.gravity, Vector3::zeros()),
+                None => SpatialVector::new(-self.gravity, Vector3::zeros()),
             };
             let carried = d.placement.twist_to_child(&parent) + d.acceleration;
             match link.motion {
-                Motion::Free => {
-                    let force = Spatial::from_slice(&tau[link.v..]) - d.wrench;
+                JointMotion::Free => {
+                    let force = SpatialVector::from_slice(&tau[link.v..]) - d.wrench;
                     d.acceleration = d.articulated.acceleration_from_wrench(&force);
                     let own: Vector6<f64> = (d.acceleration - carried).as_six_vector();
                     a[link.v..link.v + 6].copy_from_slice(own.as_slice());
                 }
-                Motion::Turn(_) | Motion::Slide(_) => {
+                JointMotion::Turn(_) | JointMotion::Slide(_) => {
                     let own = (d.force - d.column.dot(&carried)) * d.inverse;
                     a[link.v] = own;
                     d.acceleration = carried + link.motion.subspace_column(0) * own;
@@ -319,7 +319,7 @@ impl Model {
         self.compute_placements(data, q);
         let mut twice = 0.0;
         for (k, link) in self.links.iter().enumerate() {
-            let parent = link.parent.map_or(Spatial::zero(), |p| data.0[p].twist);
+            let parent = link.parent.map_or(SpatialVector::zero(), |p| data.0[p].twist);
             let d = &mut data.0[k];
             d.twist = d.placement.twist_to_child(&parent) + link.motion.twist_from_rates(&v[link.v..]);
             twice += d.twist.dot(&link.inertia.momentum_of_twist(&d.twist));
@@ -343,7 +343,7 @@ impl Model {
         jacobian.fill(0.0);
         let frame = &self.frames[frame];
         // Ancestors from the frame inwards, relative to the frame and in its axes …
-        let mut seen = frame.placement.inverse();
+        let mut seen = frame.placement.inverse_placement();
         let mut at = frame.link;
         while let Some(k) = at {
             let link = &self.links[k];
@@ -353,7 +353,7 @@ impl Model {
                 let column = seen.twist_to_parent(&link.motion.subspace_column(dof));
                 jacobian.set_column(link.v + dof, &column.as_six_vector());
             }
-            seen = seen.compose_with(&d.placement.inverse());
+            seen = seen.compose_with(&d.placement.inverse_placement());
             at = link.parent;
         }
         // … then all columns in ground axes.
@@ -362,7 +362,8 @@ impl Model {
         while let Some(k) = at {
             let link = &self.links[k];
             for column in link.v..link.v + link.motion.entry_counts_of_q_and_v().1 {
-                let turned = Spatial::from_slice(jacobian.column(column).as_slice()).map(|v| axes * v);
+                let turned = SpatialVector::from_slice(jacobian.column(column).as_slice())
+                    .map_linear_and_angular(|v| axes * v);
                 jacobian.set_column(column, &turned.as_six_vector());
             }
             at = link.parent;

@@ -1,7 +1,7 @@
 //! Generated functions and the generic implementation of the same functions, on the same random states.
 
 use crate::generic::{Model, Options, Workspace};
-use crate::operations::{FunctionSize, Operations};
+use crate::operations::{CompiledMechanism, FunctionOperationCounts};
 use crate::robots::Panda;
 use crate::states::{STATES, State, random_states};
 use linkwork::{Mechanism, frame};
@@ -21,11 +21,11 @@ pub struct ImplementationPair {
     /// Closure that returns the largest difference of both results, relative to one plus their magnitude.
     pub difference: Box<dyn FnMut(usize) -> f64>,
     /// Size of the generated function, in operations.
-    pub size: FunctionSize,
+    pub size: FunctionOperationCounts,
 }
 
 /// Robot with its functions in both implementations.
-pub struct Robot {
+pub struct ComparedRobot {
     /// Name of the robot.
     pub name: &'static str,
     /// Measured functions of the robot, each in both implementations.
@@ -33,10 +33,10 @@ pub struct Robot {
 }
 
 /// Returns all robots of the comparison of generated and generic code.
-pub fn compared_robots() -> Vec<Robot> {
+pub fn compared_robots() -> Vec<ComparedRobot> {
     macro_rules! robot {
         ($name:literal, $robot:ident, $file:literal, $arguments:literal, $options:expr, $frame:literal) => {{
-            let source = Source {
+            let source = RobotSource {
                 name: $name,
                 text: include_str!(concat!("../../models/urdf/", $file, ".urdf")),
                 options: $options,
@@ -69,7 +69,7 @@ pub fn compared_robots() -> Vec<Robot> {
 }
 
 /// Source text of a robot for both implementations.
-struct Source {
+struct RobotSource {
     name: &'static str,
     /// Text of the file, and the options with which the generic implementation reads it.
     text: &'static str,
@@ -81,7 +81,7 @@ struct Source {
 }
 
 /// Generic model with storage for the results of its algorithms.
-struct GenericModel {
+struct GenericModelWithWorkspace {
     model: Rc<Model>,
     data: Workspace,
     vector: DVector<f64>,
@@ -91,23 +91,23 @@ struct GenericModel {
 }
 
 /// Type of closures that run a function of the generic implementation and return its result.
-type GenericRun<const NQ: usize, const NV: usize> =
-    for<'s> fn(&'s mut GenericModel, &State<NQ, NV>) -> &'s [f64];
+type GenericModelCall<const NQ: usize, const NV: usize> =
+    for<'s> fn(&'s mut GenericModelWithWorkspace, &State<NQ, NV>) -> &'s [f64];
 
 fn robot_with_compared_functions<M, J, const NQ: usize, const NV: usize, const NU: usize>(
-    source: &Source,
+    source: &RobotSource,
     robot: &'static M,
     jacobian: J,
-) -> Robot
+) -> ComparedRobot
 where
     M: Mechanism<NQ, NV, NU, Scalar = f64>,
     J: Fn(&SVector<f64, NQ>) -> SMatrix<f64, 6, NV> + Copy + 'static,
 {
     let model = Model::from_urdf(source.text, &source.options);
     let model = Rc::new(model.unwrap_or_else(|message| panic!("{}: {message}", source.name)));
-    let operations = Operations::compile(source.arguments, "pub struct Robot;");
+    let operations = CompiledMechanism::compile_mechanism(source.arguments, "pub struct Robot;");
     let states = Rc::new(random_states(&model));
-    let bench = GenericModelBenchmark {
+    let bench = GenericModelWithStates {
         frame: model.index_of_frame(source.frame).unwrap_or_default(),
         model,
         states,
@@ -176,19 +176,19 @@ where
             },
         ),
     ];
-    Robot { name: source.name, pairs }
+    ComparedRobot { name: source.name, pairs }
 }
 
 /// Generic model with the states at which it is evaluated.
-struct GenericModelBenchmark<const NQ: usize, const NV: usize> {
+struct GenericModelWithStates<const NQ: usize, const NV: usize> {
     model: Rc<Model>,
     frame: usize,
     states: Rc<Vec<State<NQ, NV>>>,
 }
 
-impl<const NQ: usize, const NV: usize> GenericModelBenchmark<NQ, NV> {
-    fn allocate_generic_model(&self) -> GenericModel {
-        GenericModel {
+impl<const NQ: usize, const NV: usize> GenericModelWithStates<NQ, NV> {
+    fn allocate_generic_model(&self) -> GenericModelWithWorkspace {
+        GenericModelWithWorkspace {
             model: self.model.clone(),
             data: self.model.allocate_workspace(),
             vector: DVector::zeros(NV),
@@ -201,9 +201,9 @@ impl<const NQ: usize, const NV: usize> GenericModelBenchmark<NQ, NV> {
     fn generated_and_generic_pair<F, const R: usize, const C: usize>(
         &self,
         function: &'static str,
-        size: FunctionSize,
+        size: FunctionOperationCounts,
         generated: F,
-        generic: GenericRun<NQ, NV>,
+        generic: GenericModelCall<NQ, NV>,
     ) -> ImplementationPair
     where
         F: Fn(&State<NQ, NV>) -> SMatrix<f64, R, C> + Copy + 'static,

@@ -111,27 +111,37 @@ pub const PROBLEMS: [&str; 4] = ["pleiades", "car axis", "Andrews' squeezer", "s
 
 /// Operation on a test problem, generic over the type of its mechanism.
 trait ProblemVisitor {
-    type Result;
-    fn visit<M, const N: usize>(self, m: &M, start: ([f64; N], [f64; N]), end: f64) -> Self::Result
+    type VisitResult;
+    fn visit_mechanism<M, const N: usize>(
+        self,
+        m: &M,
+        start: ([f64; N], [f64; N]),
+        end: f64,
+    ) -> Self::VisitResult
     where
         M: Mechanism<N, N, 0, Scalar = f64>;
 }
 
-fn visit_problem<V: ProblemVisitor>(problem: usize, visit: V) -> V::Result {
+fn visit_problem<V: ProblemVisitor>(problem: usize, visit: V) -> V::VisitResult {
     match problem {
-        0 => visit.visit(&Pleiades {}, Pleiades::START, 3.0),
-        1 => visit.visit(&CarAxle {}, ([0.0, 0.5, 1.0, 0.5], [-0.5, 0.0, -0.5, 0.0]), 3.0),
-        2 => visit.visit(&AndrewsSqueezer {}, (AndrewsSqueezer::START, [0.0; 7]), 0.03),
-        _ => visit.visit(&StiffGovernor {}, ([0.01, 0.0, 0.8], [0.0, 6.0, 0.0]), 5.0),
+        0 => visit.visit_mechanism(&Pleiades {}, Pleiades::START, 3.0),
+        1 => visit.visit_mechanism(&CarAxle {}, ([0.0, 0.5, 1.0, 0.5], [-0.5, 0.0, -0.5, 0.0]), 3.0),
+        2 => visit.visit_mechanism(&AndrewsSqueezer {}, (AndrewsSqueezer::START, [0.0; 7]), 0.03),
+        _ => visit.visit_mechanism(&StiffGovernor {}, ([0.01, 0.0, 0.8], [0.0, 6.0, 0.0]), 5.0),
     }
 }
 
 struct IntegrationVisitor<S>(S);
 
 impl<S: Method<f64> + Clone> ProblemVisitor for IntegrationVisitor<S> {
-    type Result = Result<IntegrationResult, Error>;
+    type VisitResult = Result<IntegrationResult, Error>;
 
-    fn visit<M, const N: usize>(self, m: &M, start: ([f64; N], [f64; N]), end: f64) -> Self::Result
+    fn visit_mechanism<M, const N: usize>(
+        self,
+        m: &M,
+        start: ([f64; N], [f64; N]),
+        end: f64,
+    ) -> Self::VisitResult
     where
         M: Mechanism<N, N, 0, Scalar = f64>,
     {
@@ -168,9 +178,14 @@ pub fn solve_problem<S: Method<f64> + Clone>(problem: usize, method: S) -> Resul
 struct StartStateVisitor;
 
 impl ProblemVisitor for StartStateVisitor {
-    type Result = (Vec<f64>, f64);
+    type VisitResult = (Vec<f64>, f64);
 
-    fn visit<M, const N: usize>(self, _: &M, (q, v): ([f64; N], [f64; N]), end: f64) -> Self::Result
+    fn visit_mechanism<M, const N: usize>(
+        self,
+        _: &M,
+        (q, v): ([f64; N], [f64; N]),
+        end: f64,
+    ) -> Self::VisitResult
     where
         M: Mechanism<N, N, 0, Scalar = f64>,
     {
@@ -190,9 +205,9 @@ struct RateVisitor<'a> {
 }
 
 impl ProblemVisitor for RateVisitor<'_> {
-    type Result = ();
+    type VisitResult = ();
 
-    fn visit<M, const N: usize>(self, m: &M, _: ([f64; N], [f64; N]), _: f64)
+    fn visit_mechanism<M, const N: usize>(self, m: &M, _: ([f64; N], [f64; N]), _: f64)
     where
         M: Mechanism<N, N, 0, Scalar = f64>,
     {

@@ -1,6 +1,6 @@
 //! Reproducible random states at which the benchmarked functions are called.
 
-use crate::generic::{Model, Motion};
+use crate::generic::{JointMotion, Model};
 use crate::random::Random;
 use nalgebra::SVector;
 
@@ -25,12 +25,12 @@ impl<const NQ: usize, const NV: usize> State<NQ, NV> {
     /// of order one.
     fn random_state_of_model(model: &Model, random: &mut Random) -> State<NQ, NV> {
         let mut q = SVector::<f64, NQ>::from_fn(|_, _| random.uniform_within(3.0));
-        for link in model.links.iter().filter(|link| link.motion == Motion::Free) {
+        for link in model.links.iter().filter(|link| link.motion == JointMotion::Free) {
             let mut quaternion = q.fixed_rows_mut::<4>(link.q + 3);
             quaternion.normalize_mut();
         }
-        let mut vector = || SVector::from_fn(|_, _| random.uniform_within(2.0));
-        State { q, v: vector(), a: vector(), tau: vector() * 10.0 }
+        let mut random_vector = || SVector::from_fn(|_, _| random.uniform_within(2.0));
+        State { q, v: random_vector(), a: random_vector(), tau: random_vector() * 10.0 }
     }
 
     /// Returns all numbers of the state: `q`, `v`, `a` and `τ`, concatenated.

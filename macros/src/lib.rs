@@ -157,12 +157,12 @@ pub fn mechanism(arguments: TokenStream, item: TokenStream) -> TokenStream {
     let folder = std::env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from).unwrap_or_default();
     let (here, item) = (Span::call_site(), item.into());
     let text = here.local_file().and_then(|path| std::fs::read_to_string(path).ok()).unwrap_or_default();
-    if let Some(bare) = linkwork_compiler::duplicate_struct_without_fields(&item, &text, here.line()) {
+    if let Some(bare) = linkwork_compiler::struct_without_fields_if_duplicate(&item, &text, here.line()) {
         return bare.into();
     }
     let emitted = match above::stands_below_a_derive(&text, here.line(), here.column()) {
         false => linkwork_compiler::expand(arguments.into(), item, &folder),
-        true => linkwork_compiler::expand_with_derive_above(arguments.into(), item, &folder),
+        true => linkwork_compiler::expand_derive_above_to_error(arguments.into(), item, &folder),
     };
     let mut tokens = TokenStream::from(emitted.tokens);
     match emitted.text.parse::<TokenStream>() {

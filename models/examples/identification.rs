@@ -223,11 +223,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     // Conversion: the parameters of the joints, then the bodies nearest to the file's that reproduce the
     // measurements. Because of the noise, no consistent bodies may reproduce them exactly.
-    let joint_parameters_from_index = |first: usize| JointVector::from_fn(|j, _| found[first + j]);
+    let joint_parameters_starting_at = |first: usize| JointVector::from_fn(|j, _| found[first + j]);
     let rotors = JointVector::from_fn(|j, _| if j > 1 { found[BASE + 14 + j - 2] } else { 0.0 });
     arm = arm.with_friction_and_rotor_parameters([
-        joint_parameters_from_index(BASE),
-        joint_parameters_from_index(BASE + 7),
+        joint_parameters_starting_at(BASE),
+        joint_parameters_starting_at(BASE + 7),
         rotors,
     ]);
     let base = found.fixed_rows::<BASE>(0).into_owned();

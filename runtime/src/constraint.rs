@@ -210,7 +210,7 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         p: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NV> {
         let half = h * constant(0.5);
-        let way = crate::speeds::displacement_of_mechanism(self, q, v, half);
+        let way = crate::speeds::mechanism_displacement_given_final_velocity(self, q, v, half);
         let holonomic = self.holonomic();
         let within = if NC > holonomic { self.integrate(q, &way) } else { *q };
         let mut gap = if NC > holonomic || h == nalgebra::zero() {
@@ -352,7 +352,7 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         // Off a branch, near a singular configuration, the constraints have other directions than on the
         // branch.
         let left = self.constraint_residuals(t, q);
-        let farthest = largest_jacobian_entry(&self.constraint_jacobian(t, q));
+        let farthest = largest_jacobian_entry_or_one(&self.constraint_jacobian(t, q));
         if is_residual_acceptable(largest_entry(&left)?.1, q)
             && size
                 <= careful::minimum_reliable_row_magnitude(&left) * farthest * largest_magnitude_or_one(&v)
@@ -501,7 +501,9 @@ fn is_near_branch_crossing<T: Real, const N: usize>(rate: T, v: &SVector<T, N>) 
 }
 
 /// Returns the largest magnitude of the entries of the Jacobian, but at least one.
-fn largest_jacobian_entry<T: Real, const NC: usize, const NV: usize>(jacobian: &SMatrix<T, NC, NV>) -> T {
+fn largest_jacobian_entry_or_one<T: Real, const NC: usize, const NV: usize>(
+    jacobian: &SMatrix<T, NC, NV>,
+) -> T {
     jacobian
         .column_iter()
         .fold(T::one(), |most, column| column.iter().fold(most, |most, j| most.max(j.abs())))

@@ -472,13 +472,13 @@ where
             );
             let mut acted = ContactsWithImpulses::contacts_without_impulses(selection, false);
             let velocities = ContactVelocities::unevaluated_in_configuration(mechanism, t, q);
-            let velocities_before = || selection.selected_contact_rates(before);
+            let contact_velocities_before_impulses = || selection.selected_contact_rates(before);
             compute_closed_contact_impulses(
                 mechanism,
                 (t, &velocities),
                 (q, free),
                 &closed,
-                (velocities_before, None),
+                (contact_velocities_before_impulses, None),
                 &mut acted,
             )
         }

@@ -155,7 +155,7 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
         _q: &SVector<Self::Scalar, NQ>,
         _v: &SVector<Self::Scalar, NV>,
     ) -> SquareMatrix<Self::Scalar, NV> {
-        unknown_matrix()
+        nan_matrix()
     }
 
     /// Returns `(∂ṗ/∂q, ∂ṗ/∂v)` of [`momentum_rate`](Mechanism::momentum_rate). NaN without
@@ -166,7 +166,7 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
         _q: &SVector<Self::Scalar, NQ>,
         _v: &SVector<Self::Scalar, NV>,
     ) -> (SquareMatrix<Self::Scalar, NV>, SquareMatrix<Self::Scalar, NV>) {
-        (unknown_matrix(), unknown_matrix())
+        (nan_matrix(), nan_matrix())
     }
 
     /// Passes the mechanism to `visitor`, with the numbers of its constraints as const parameters, if their
@@ -289,7 +289,7 @@ where
 }
 
 /// Returns a matrix of NaN, for derivatives that are not available.
-pub(crate) fn unknown_matrix<T: Real, const R: usize, const C: usize>() -> SMatrix<T, R, C> {
+pub(crate) fn nan_matrix<T: Real, const R: usize, const C: usize>() -> SMatrix<T, R, C> {
     SMatrix::repeat(constant(f64::NAN))
 }
 

@@ -103,12 +103,12 @@ impl<T: Real, const N: usize> Diagram<T, N> {
     #[must_use]
     pub fn new(body: &'static str, names: [(&'static str, Origin); N], numbers: &[T]) -> Self {
         let mut parts = numbers.chunks(3);
-        let mut vector = || {
+        let mut next_vector = || {
             let part = parts.next().unwrap_or(&[]);
             SVector::<T, 3>::from_fn(|k, _| part.get(k).copied().unwrap_or(T::zero()))
         };
         let actions = names.map(|(name, origin)| {
-            let (point, force, torque) = (vector(), vector(), vector());
+            let (point, force, torque) = (next_vector(), next_vector(), next_vector());
             Action { name, origin, point, force, torque }
         });
         Self { body, actions }

@@ -139,12 +139,12 @@ where
 }
 
 /// Matrices for each base parameter and link.
-type ParameterMatrices<T, const N: usize, const B: usize> = [[Matrix4<T>; N]; B];
+type BaseParameterFactors<T, const N: usize, const B: usize> = [[Matrix4<T>; N]; B];
 
 /// Base parameters as an affine function of the links' pseudo-inertias: a matrix for each base parameter and
 /// link, and the constant term.
 struct AffineParameterMap<T, const N: usize, const B: usize> {
-    factors: ParameterMatrices<T, N, B>,
+    factors: BaseParameterFactors<T, N, B>,
     rest: SVector<T, B>,
 }
 

@@ -83,7 +83,7 @@ impl<T: Real, P: Tiling<T, N>, const N: usize, const M: usize, const COUNT: usiz
             clear_entries(b, zeros);
             for ((first, end), rows) in groups {
                 let some = b.data.0.get_mut(*first..*end).unwrap_or(&mut []);
-                P::negate_products::<A>(self.matrix, some, rows);
+                P::replace_by_negative_products::<A>(self.matrix, some, rows);
             }
         }
     }

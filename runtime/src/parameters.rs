@@ -229,7 +229,7 @@ fn fault_of_violated_condition<T: Real>(rule: Rule, values: &[T]) -> Option<(Fau
             let large = moments.iter().find(|x| !is_at_most(x.abs(), constant(most)));
             large.map(|x| (Fault::TooLarge, to_f64(*x))).or_else(|| {
                 let holds = is_physical_inertia(moments, *m, tolerance);
-                (!holds).then(|| (Fault::Inertia, triangle_rule_excess(moments.map(to_f64))))
+                (!holds).then(|| (Fault::Inertia, triangle_inequality_margin(moments.map(to_f64))))
             })
         }
         _ => None,
@@ -277,7 +277,7 @@ fn is_physical_inertia<T: Real>([xx, yy, zz, xy, xz, yz]: [T; 6], m: T, toleranc
 
 /// Returns the sum of the two smaller principal moments of inertia minus the largest, computed by Jacobi
 /// rotations.
-fn triangle_rule_excess([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> f64 {
+fn triangle_inequality_margin([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> f64 {
     // Diagonal entries xx, yy, zz, and the off-diagonal entries opposite to them: yz, xz, xy.
     let (mut d, mut o) = ([xx, yy, zz], [yz, xz, xy]);
     for _ in 0..16 {
@@ -393,7 +393,7 @@ mod tests {
         let moments = [0.1, 0.5, 0.2];
         let inertia_entry = |i: usize, j: usize| (0..3).map(|k| moments[k] * axes[k][i] * axes[k][j]).sum();
         let full = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].map(|(i, j)| inertia_entry(i, j));
-        assert!((triangle_rule_excess(full) + 0.2).abs() < 1e-12);
+        assert!((triangle_inequality_margin(full) + 0.2).abs() < 1e-12);
         let [xx, yy, zz, xy, xz, yz] = full;
         let figure = Figure { rule: Rule::Inertia, name: "the inertia of `hand`", parameters: &["m", "l"] };
         let error = validate(&[figure], &[xx, yy, zz, xy, xz, yz, 1.0]).unwrap_err();

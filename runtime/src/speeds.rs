@@ -43,7 +43,13 @@ pub(crate) fn displacement_given_final_velocity<T: Real, const N: usize>(
 
 /// Returns the displacement of a mechanism after `s` seconds, given the velocity at its end (see
 /// [`displacement_given_final_velocity`]).
-pub(crate) fn displacement_of_mechanism<M, T, const NQ: usize, const NV: usize, const NU: usize>(
+pub(crate) fn mechanism_displacement_given_final_velocity<
+    M,
+    T,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+>(
     m: &M,
     q: &SVector<T, NQ>,
     v: &SVector<T, NV>,
@@ -94,7 +100,7 @@ where
     M: Derivatives<NQ, NV, NU, Scalar = T>,
 {
     let two = constant::<T>(2.0);
-    let way = displacement_of_mechanism(m, q, v, s);
+    let way = mechanism_displacement_given_final_velocity(m, q, v, s);
     if !m.features().speeds {
         return [m.integrate_derivatives(&way), m.integrate_derivatives(&(v * (s * two)))];
     }
@@ -102,11 +108,11 @@ where
     let (by_q, by_way, by_v) = m.displacement_rate_derivatives(q, &way, v);
     let own = SquareMatrix::<T, NV>::identity() - by_way * s;
     let (by_q, by_v) = (eliminate_with_pivoting(own, by_q * s), eliminate_with_pivoting(own, by_v));
-    let derivatives_after_scaled_move = |times: T| {
+    let derivatives_at_scaled_displacement = |times: T| {
         let (turned, moves) = m.integrate_derivatives_at(q, &(way * times));
         (turned + moves * by_q * times, moves * by_v)
     };
-    [derivatives_after_scaled_move(T::one()), derivatives_after_scaled_move(two)]
+    [derivatives_at_scaled_displacement(T::one()), derivatives_at_scaled_displacement(two)]
 }
 
 /// Returns the derivatives `(∂/∂q, ∂/∂dv)` of the displaced configuration `q₁ = q ⊕ Z(q) dv` in generalized

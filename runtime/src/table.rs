@@ -325,17 +325,18 @@ impl<const N: usize, V: Deref<Target = [f64]>> Table<N, V> {
     fn weighted_sum_around_cell<T: Real>(&self, cells: [usize; 3], weights: [&[T; 4]; 3]) -> T {
         let axis_length = |axis: usize| self.axes.get(axis).map_or(1, |points| points.len());
         // Slot 0 of the weights is the point before the cell.
-        let point_index = |axis: usize, slot: usize| (cells[axis] + slot).checked_sub(1);
+        let axis_point_of_slot = |axis: usize, slot: usize| (cells[axis] + slot).checked_sub(1);
         let weight_of_slot = |axis: usize, slot: usize| weights[axis].get(slot).copied().unwrap_or(T::zero());
         let (rows, columns) = (axis_length(1), axis_length(2));
         let mut sum = T::zero();
         for a in self.nonzero_weight_slots(0) {
-            let Some(i) = point_index(0, a) else { continue };
+            let Some(i) = axis_point_of_slot(0, a) else { continue };
             for b in self.nonzero_weight_slots(1) {
-                let Some(j) = point_index(1, b) else { continue };
+                let Some(j) = axis_point_of_slot(1, b) else { continue };
                 let both = weight_of_slot(0, a) * weight_of_slot(1, b);
                 for c in self.nonzero_weight_slots(2) {
-                    let value = point_index(2, c).and_then(|k| self.values.get((i * rows + j) * columns + k));
+                    let value =
+                        axis_point_of_slot(2, c).and_then(|k| self.values.get((i * rows + j) * columns + k));
                     if let Some(value) = value {
                         sum += both * weight_of_slot(2, c) * constant(*value);
                     }

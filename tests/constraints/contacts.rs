@@ -67,7 +67,7 @@ fn cones_on_axles_are_bevel_gears() {
 
 /// Cone that is free to move in a funnel.
 #[mechanism(gravity = -9.81 * z)]
-struct FreeCone {
+struct FreeConeInFunnel {
     #[body(mass = 0.2, com = 0.15 * z, inertia = cone(0.2, 0.1, 0.2, z))]
     cone: Body,
     #[joint(ground -> cone)]
@@ -89,19 +89,20 @@ struct ConeOnBallJoint {
 
 #[test]
 fn cone_rotates_about_its_line_of_contact() {
-    assert_eq!((FreeCone::NC, FreeCone::NH, FreeCone::NS), (5, 4, 1));
+    assert_eq!((FreeConeInFunnel::NC, FreeConeInFunnel::NH, FreeConeInFunnel::NS), (5, 4, 1));
     assert_eq!((ConeOnBallJoint::NC, ConeOnBallJoint::NH, ConeOnBallJoint::NS), (2, 1, 1));
     // The cone leans towards x by the difference of the angles, and is rotated about its axis.
     let turn = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), 0.8 - 0.46)
         * UnitQuaternion::from_axis_angle(&Vector3::z_axis(), 1.1);
     let line = turn.inverse() * Vector3::new(0.8_f64.sin(), 0.0, 0.8_f64.cos());
     let q = [0.0, 0.0, 0.0, turn.i, turn.j, turn.k, turn.w].into();
-    assert!(FreeCone {}.constraint_residuals(&q).amax() < 1e-15);
-    let v = FreeCone {}.project_velocity(&q, &[0.3, -0.4, 0.5, 1.0, 2.0, 3.0].into()).expect("regular");
+    assert!(FreeConeInFunnel {}.constraint_residuals(&q).amax() < 1e-15);
+    let v =
+        FreeConeInFunnel {}.project_velocity(&q, &[0.3, -0.4, 0.5, 1.0, 2.0, 3.0].into()).expect("regular");
     let w = Vector3::new(v[3], v[4], v[5]);
     assert!(w.norm() > 0.1 && w.cross(&line).norm() < 1e-14, "{w} is not along {line}");
     assert!(v.fixed_rows::<3>(0).norm() < 1e-14);
-    let a = FreeCone {}.forward_dynamics(&q, &v, &SVector::zeros());
+    let a = FreeConeInFunnel {}.forward_dynamics(&q, &v, &SVector::zeros());
     let held = ConeOnBallJoint {}.forward_dynamics(&[q[3], q[4], q[5], q[6]].into(), &w, &SVector::zeros());
     assert!((held - a.fixed_rows::<3>(3)).amax() < 1e-11 * held.amax());
 }
@@ -202,20 +203,28 @@ fn parametric_surface_contact_has_exact_derivatives() {
     let any = [0.0, 0.0, 0.3, 0.1, -0.4, 2.0, -3.0, 1.0].into();
     let v = TorusOnParametricPlane {}.project_velocity(&q, &any).expect("regular");
     let (by_q, by_v, _) = TorusOnParametricPlane {}.forward_dynamics_derivatives(&q, &v, &SVector::zeros());
-    let accelerations_on_points = |q: &SVector<f64, 9>, v: &SVector<f64, 8>| {
+    let accelerations_on_parametric_plane = |q: &SVector<f64, 9>, v: &SVector<f64, 8>| {
         TorusOnParametricPlane {}.forward_dynamics(q, v, &SVector::zeros())
     };
     for k in 0..8 {
-        let unit_step = |h: f64| SVector::<f64, 8>::from_fn(|i, _| if i == k { h } else { 0.0 });
+        let unit_direction_times = |h: f64| SVector::<f64, 8>::from_fn(|i, _| if i == k { h } else { 0.0 });
         let five_point_derivative = |f: &dyn Fn(f64) -> SVector<f64, 8>, h: f64| {
             ((f(h) - f(-h)) * 8.0 - (f(2.0 * h) - f(-2.0 * h))) / (12.0 * h)
         };
         let found = five_point_derivative(
-            &|h| accelerations_on_points(&TorusOnParametricPlane {}.integrate(&q, &unit_step(h)), &v),
+            &|h| {
+                accelerations_on_parametric_plane(
+                    &TorusOnParametricPlane {}.integrate(&q, &unit_direction_times(h)),
+                    &v,
+                )
+            },
             1e-3,
         );
         assert!((found - by_q.column(k)).amax() < 1e-6 * by_q.amax(), "{found} {}", by_q.column(k));
-        let found = five_point_derivative(&|h| accelerations_on_points(&q, &(v + unit_step(h))), 1e-3);
+        let found = five_point_derivative(
+            &|h| accelerations_on_parametric_plane(&q, &(v + unit_direction_times(h))),
+            1e-3,
+        );
         assert!((found - by_v.column(k)).amax() < 1e-6 * by_v.amax(), "{found} {}", by_v.column(k));
     }
 }

@@ -3,7 +3,7 @@
 use linkwork_compiler::compile;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
-use linkwork_compiler::read_source;
+use linkwork_compiler::parse_source_and_import;
 use quote::ToTokens;
 use std::fmt::Write;
 use std::path::Path;
@@ -13,10 +13,10 @@ use syn::{Item, Meta};
 fn count_operations(arguments: &str, item: &str) -> usize {
     let parse_tokens = |text: &str| text.parse().expect("the source is Rust");
     let mut cx = Diagnostics::new();
-    let source = read_source(parse_tokens(arguments), parse_tokens(item), Path::new(""), &mut cx);
+    let source = parse_source_and_import(parse_tokens(arguments), parse_tokens(item), Path::new(""), &mut cx);
     let graph = Graph::new();
     let output = source.and_then(|source| compile(&source, &graph, &mut cx));
-    let (_, output) = output.unwrap_or_else(|| panic!("{}\n{item}", cx.messages().join("\n")));
+    let (_, output) = output.unwrap_or_else(|| panic!("{}\n{item}", cx.full_message_texts().join("\n")));
     let found = output.functions.iter().find(|f| f.name == "__constrained_dynamics");
     found.expect("it has constraints").program.counts.total_operations()
 }

@@ -13,12 +13,12 @@ use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
 use std::cell::Cell;
 use std::fmt::Write;
-use support::model::{check_model_or_errors, random_symbol_values};
+use support::model::{check_model_or_return_errors, random_symbol_values};
 use support::random::property_test_config;
 
 /// Chain of bodies from the ground back to the ground, with the joint that closes it.
 #[derive(Clone, Debug)]
-struct Chain {
+struct ClosedChain {
     /// Axis and offset of each joint, and whether the joint slides.
     joints: Vec<([f64; 3], [f64; 3], bool)>,
     closing: usize,
@@ -39,7 +39,7 @@ const CLOSING: [(&str, &str); 7] = [
     ("Planar", ", about = z"),
 ];
 
-impl Chain {
+impl ClosedChain {
     fn chain_source(&self, arguments: &str) -> (String, String) {
         let vector_text = |v: &[f64; 3]| format!("{:?} * x + {:?} * y + {:?} * z", v[0], v[1], v[2]);
         let mut item = String::from("struct Chain {\n");
@@ -73,7 +73,7 @@ impl Chain {
     }
 }
 
-fn random_chains() -> impl Strategy<Value = Chain> {
+fn random_chains() -> impl Strategy<Value = ClosedChain> {
     let random_direction = || prop::array::uniform3(-1.0..1.0_f64);
     let joint = (random_direction(), random_direction(), prop::bool::weighted(0.2))
         .prop_filter("a direction needs a length", |(axis, ..)| {
@@ -82,28 +82,28 @@ fn random_chains() -> impl Strategy<Value = Chain> {
     let masses = (prop_oneof![Just(0.0), Just(3.0), Just(12.0)], prop::array::uniform6(0.0..1.0_f64));
     let anchor = prop::array::uniform3(0.2..1.0_f64);
     (prop::collection::vec(joint, 3..=6), any::<usize>(), anchor, any::<bool>(), masses).prop_map(
-        |(joints, closing, anchor, planar, masses)| Chain { joints, closing, anchor, planar, masses },
+        |(joints, closing, anchor, planar, masses)| ClosedChain { joints, closing, anchor, planar, masses },
     )
 }
 
 /// Calls `check` with the model, unless the chain cannot move or its speeds depend on each other.
-fn with_model(chain: &Chain, arguments: &str, check: impl FnOnce(&Model<'_>)) {
+fn check_model_unless_rejected(chain: &ClosedChain, arguments: &str, check: impl FnOnce(&Model<'_>)) {
     let source = chain.chain_source(arguments);
-    if let Err(messages) = check_model_or_errors(&source, |_, model| check(model)) {
+    if let Err(messages) = check_model_or_return_errors(&source, |_, model| check(model)) {
         let known = ["cannot move", "no configuration", "do not follow", "can never hold"];
-        let is_expected = |m: &String| known.iter().any(|k| m.contains(k));
-        assert!(messages.iter().all(is_expected), "{}\n{}", messages.join("\n"), source.1);
+        let is_expected_error_message = |m: &String| known.iter().any(|k| m.contains(k));
+        assert!(messages.iter().all(is_expected_error_message), "{}\n{}", messages.join("\n"), source.1);
     }
 }
 
 /// Whether the runtime accepts the accelerations from independent speeds, or falls back to multipliers. It
 /// compares the pivots of the elimination, which follow the accelerations and multipliers in `found`, with
 /// their values before the elimination.
-fn accepts_eliminated_accelerations(nv: usize, nc: usize, found: &[f64]) -> bool {
+fn runtime_accepts_eliminated_accelerations(nv: usize, nc: usize, found: &[f64]) -> bool {
     fn has_independent_solution<const NC: usize>(found: &[f64]) -> bool {
-        let solution_block = |first: usize| core::array::from_fn(|k| found[first * NC + k]);
-        let (pivots, before) = (solution_block(1), solution_block(2));
-        let all = Elimination { accelerations: [], multipliers: solution_block(0), pivots, before };
+        let block_of_found_values = |first: usize| core::array::from_fn(|k| found[first * NC + k]);
+        let (pivots, before) = (block_of_found_values(1), block_of_found_values(2));
+        let all = Elimination { accelerations: [], multipliers: block_of_found_values(0), pivots, before };
         solution_with_predetermined_pivots::<f64, 0, NC>(&all).is_some()
     }
     let found = &found[nv..];
@@ -129,7 +129,7 @@ fn both_formulations_satisfy_the_equations_of_motion() {
     let run = TestRunner::new(property_test_config(test_case_count(64))).run(
         &(random_chains(), 0..1000_u64),
         |(chain, seed)| {
-            with_model(&chain, ", formulation = speeds", |model| {
+            check_model_unless_rejected(&chain, ", formulation = speeds", |model| {
                 let joints = kinematics::joints_of_model(model);
                 let v = mechanics::velocity_symbols(model);
                 let mass = crba::mass_matrix(model, &joints);
@@ -146,10 +146,10 @@ fn both_formulations_satisfy_the_equations_of_motion() {
                 let at = random_symbol_values(model, seed);
                 let first = eval(&by_multipliers, &at);
                 let second = eval(&by_speeds, &at);
-                // Close to a singular configuration, or with nearly dependent speeds, small pivots exclude the
-                // solution.
+                // Close to a singular configuration, or with nearly dependent speeds, small pivots exclude
+                // the solution.
                 let regular = (0..nc).all(|k| first[nv + nc + k] > 1e-4 * first[nv + 2 * nc + k]);
-                let taken = accepts_eliminated_accelerations(nv, nc, &second);
+                let taken = runtime_accepts_eliminated_accelerations(nv, nc, &second);
                 let m = eval(&mass.concat(), &at);
                 let j = eval(&rows.concat(), &at);
                 let (f, b) = (eval(&force, &at), eval(&bias, &at));
@@ -166,12 +166,12 @@ fn both_formulations_satisfy_the_equations_of_motion() {
                         let held = (0..nc).map(|c| -j[c * nv + i] * lambda[c]);
                         (0..nv).map(|k| m[i * nv + k] * a[k]).chain(held).chain([-f[i]]).collect()
                     };
-                    let constraint_rate_rows = |c: usize| -> Vec<f64> {
+                    let terms_of_constraint_equation = |c: usize| -> Vec<f64> {
                         (0..nv).map(|k| j[c * nv + k] * a[k]).chain([b[c]]).collect()
                     };
                     for equations in [
                         (0..nv).map(terms_of_motion_equation).collect::<Vec<_>>(),
-                        (0..nc).map(constraint_rate_rows).collect(),
+                        (0..nc).map(terms_of_constraint_equation).collect(),
                     ] {
                         let sums: Vec<(f64, f64)> =
                             equations.iter().map(|terms| sum_and_largest_term(terms)).collect();
@@ -196,27 +196,30 @@ proptest! {
     /// derivatives of the constraint velocities at constant `v`.
     #[test]
     fn constraint_velocities_and_biases_are_time_derivatives(chain in random_chains(), seed in 0..1000_u64) {
-        with_model(&chain, "", |model| {
+        check_model_unless_rejected(&chain, "", |model| {
             let q = random_configuration(model, seed);
             let velocity_sample = |k: usize| {
                 let symbol = Quantity::Velocity(k).symbol();
                 4.0 * (sample_of_symbol(symbol, seed) - 1.0)
             };
-            let values_after = |e: &[Expr<'_>], step: f64| eval(e, &|s| match Quantity::from_symbol(s) {
+            let values_of_expressions_after = |e: &[Expr<'_>], step: f64| eval(e, &|s|
+                match Quantity::from_symbol(s) {
                 Quantity::Configuration(k) => q[k] + step * velocity_sample(k),
                 Quantity::Velocity(k) => velocity_sample(k),
                 _ => 0.0,
             });
             let difference_quotients = |e: &[Expr<'_>]| -> Vec<f64> {
                 let h = 1e-5;
-                values_after(e, h).iter().zip(values_after(e, -h)).map(|(a, b)| (a - b) / (2.0 * h)).collect()
+                values_of_expressions_after(e, h).iter().zip(values_of_expressions_after(e, -h)).map(|(a,
+                    b)| (a - b) / (2.0 * h)).collect()
             };
             let residuals = constraints::residuals(model);
             let rates = constraints::constraint_velocities(model);
             let largest_magnitude = |e: &[f64]| e.iter().fold(1.0_f64, |m, x| m.max(x.abs()));
             for (derivative, of) in [
-                (values_after(&rates, 0.0), difference_quotients(&residuals)),
-                (values_after(&constraints::constraint_biases(model), 0.0), difference_quotients(&rates)),
+                (values_of_expressions_after(&rates, 0.0), difference_quotients(&residuals)),
+                (values_of_expressions_after(&constraints::constraint_biases(model), 0.0),
+                    difference_quotients(&rates)),
             ] {
                 for (d, o) in derivative.iter().zip(&of) {
                     assert!((d - o).abs() < 1e-6 * largest_magnitude(&derivative), "{d} and {o} of {chain:?}");

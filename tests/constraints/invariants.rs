@@ -42,7 +42,7 @@ fn check_constrained_dynamics<
         let power = (after - before) / 2e-5;
         let energy = after.abs().max(1.0);
         assert!((power - tau.dot(&v)).abs() < 1e-5 * energy * scale, "{power} for {}", tau.dot(&v));
-        check_constraint_rates(m, &q, &v);
+        check_constraint_rates_by_differences(m, &q, &v);
     }
 }
 
@@ -68,8 +68,8 @@ fn check_completed_velocities<
     let nearest = m.project_velocity(0.0, q, &wanted).expect("a velocity is near");
     assert!((all - nearest).amax() < 1e-9 * nearest.amax().max(1.0), "{all} for {nearest}");
     // Components of a velocity that satisfies the constraints never contradict them.
-    let mut index = || ((random.uniform_number(1.0) + 1.0) / 2.0 * NV as f64) as usize;
-    let pair = [index(), index()];
+    let mut random_velocity_index = || ((random.uniform_number(1.0) + 1.0) / 2.0 * NV as f64) as usize;
+    let pair = [random_velocity_index(), random_velocity_index()];
     for held in [&pair[..1], &pair[..]] {
         let mut start = wanted;
         held.iter().for_each(|k| start[*k] = v[*k]);
@@ -111,7 +111,7 @@ where
 
 /// Checks by finite differences that constraint velocities are the rates of the constraint residuals, and
 /// that biases follow from the rates of the constraint velocities.
-fn check_constraint_rates<
+fn check_constraint_rates_by_differences<
     M,
     const NQ: usize,
     const NV: usize,
@@ -251,7 +251,7 @@ fn linkages_are_assembled_from_distant_guesses() {
 
 /// Bob on a circle with plane coordinates, for any scalar type.
 #[mechanism(gravity = -9.81 * y)]
-struct Held<T: Real> {
+struct BobOnCircle<T: Real> {
     length: T,
     #[body(mass = 1)]
     bob: Body,
@@ -267,7 +267,7 @@ struct Held<T: Real> {
 fn constraint_tolerance_suits_single_precision() {
     fn check_scalar_type<T: Real>(tolerance: T) {
         let one = T::one();
-        let held = Held { length: one };
+        let held = BobOnCircle { length: one };
         let near = SVector::from([one / (one + one), one]);
         let found = held.assemble(&near, &[]).expect("the circle is near");
         assert!((found.norm() - one).abs() < tolerance);

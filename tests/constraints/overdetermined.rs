@@ -37,7 +37,7 @@ fn state_with_first_pin_angle(angle: f64, rate: f64) -> (SVector<f64, 3>, SVecto
 
 /// Returns the product of the tangents of the half angles of two neighbouring pins over its constant ratio:
 /// −1 on the closed form.
-fn bennett_ratio(q: &SVector<f64, 3>) -> f64 {
+fn normalised_half_angle_tangent_product(q: &SVector<f64, 3>) -> f64 {
     let (alpha, beta) = (0.8_f64, (0.7 * 0.8_f64.sin()).asin());
     let ratio = ((alpha + beta) / 2.0).sin() / ((alpha - beta) / 2.0).sin();
     (q[0] / 2.0).tan() * (q[1] / 2.0).tan() / ratio
@@ -48,14 +48,18 @@ fn bennetts_linkage_follows_its_closed_form() {
     assert_eq!((Bennett::NV, Bennett::NC, Bennett::NP), (3, 3, 1));
     let linkage = Bennett {};
     let (q, v) = state_with_first_pin_angle(0.7, 1.0);
-    assert!((bennett_ratio(&q) + 1.0).abs() < 1e-12, "{}", bennett_ratio(&q));
+    assert!(
+        (normalised_half_angle_tangent_product(&q) + 1.0).abs() < 1e-12,
+        "{}",
+        normalised_half_angle_tangent_product(&q)
+    );
     let total_energy =
         |q: &SVector<f64, 3>, v: &SVector<f64, 3>| linkage.kinetic_energy(q, v) + linkage.potential_energy(q);
     let method = DormandPrince::new().tolerance(1e-11, 1e-11);
     let mut farthest = 0.0_f64;
     for sample in simulate(&linkage).from(q, v).method(method).duration(5.0).sample_every(0.1) {
         let sample = sample.expect("the linkage turns on");
-        assert!((bennett_ratio(&sample.q) + 1.0).abs() < 1e-9, "{}", sample.q);
+        assert!((normalised_half_angle_tangent_product(&sample.q) + 1.0).abs() < 1e-9, "{}", sample.q);
         assert!((sample.q[2] + sample.q[0]).abs() < 1e-12, "opposite pins turn alike");
         assert!((total_energy(&sample.q, &sample.v) - total_energy(&q, &v)).abs() < 1e-8);
         farthest = farthest.max((sample.q[0] - q[0]).abs());

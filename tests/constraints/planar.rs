@@ -20,7 +20,7 @@ struct Convoy {
 
 /// Two carts on a table with a constant offset between them.
 #[mechanism]
-struct Coupled {
+struct CartsWithConstantOffset {
     gap: f64,
     #[body(mass = 1)]
     first: Body,
@@ -45,9 +45,9 @@ fn equal_planar_velocities_are_two_constraints() {
 
 #[test]
 fn planar_point_difference_is_two_constraints() {
-    assert_eq!((Coupled::NC, Coupled::NH), (2, 2));
-    assert_eq!(Coupled::CONSTRAINTS, ["coupling.x", "coupling.y"]);
-    let pair = Coupled { gap: 0.5 };
+    assert_eq!((CartsWithConstantOffset::NC, CartsWithConstantOffset::NH), (2, 2));
+    assert_eq!(CartsWithConstantOffset::CONSTRAINTS, ["coupling.x", "coupling.y"]);
+    let pair = CartsWithConstantOffset { gap: 0.5 };
     let q = pair.assemble(&SVector::zeros(), &[0, 1]).expect("the second cart is moved");
     assert!((q - SVector::from([0.0, 0.0, 0.5, 0.0])).amax() < 1e-12, "{q}");
     let a = pair.forward_dynamics(&q, &SVector::zeros(), &[4.0, 8.0, 0.0, 0.0].into());

@@ -7,7 +7,7 @@ use support::random::Random;
 
 /// Disk on an incline that can slide and roll in a vertical plane.
 #[mechanism(gravity = -9.81 * y)]
-struct Roller {
+struct DiskOnIncline {
     slope: f64,
     mu: f64,
 
@@ -23,7 +23,7 @@ struct Roller {
     contact: Slipping,
 }
 
-impl Roller {
+impl DiskOnIncline {
     /// Returns a state with this velocity of the centre along the incline, m/s, and this angular velocity,
     /// rad/s.
     fn disk_state(&self, velocity: f64, turning: f64) -> (SVector<f64, 3>, SVector<f64, 3>) {
@@ -40,7 +40,7 @@ fn disk_slides_or_rolls_down_by_closed_form() -> Result<(), Error> {
     let (mu, v0) = (0.3_f64, 1e-3_f64);
     // The disk slides if tan θ > 3 μ.
     for slope in [0.3, 0.6, 0.9, 1.2] {
-        let disk = Roller { slope, mu };
+        let disk = DiskOnIncline { slope, mu };
         let (s, c) = slope.sin_cos();
         let share = s / c / (3.0 * mu);
         let acceleration_down_slope = |a: &SVector<f64, 3>| a[0] * c - a[1] * s;
@@ -74,7 +74,7 @@ fn disk_slides_or_rolls_down_by_closed_form() -> Result<(), Error> {
 
 /// Coin that slips on a table: it dissipates the power `μ N |s|² / √(|s|² + v₀²)`.
 #[mechanism(gravity = -9.81 * z, derivatives, batch)]
-struct Coin {
+struct SlippingCoin {
     mu: f64,
     v0: f64,
 
@@ -88,7 +88,7 @@ struct Coin {
     rim: Slipping,
 }
 
-const COIN: Coin = Coin { mu: 0.25, v0: 0.02 };
+const COIN: SlippingCoin = SlippingCoin { mu: 0.25, v0: 0.02 };
 
 /// Returns a state with the tilted coin on its rim, and a random velocity.
 fn random_coin_state(random: &mut Random) -> (SVector<f64, 7>, SVector<f64, 6>) {
@@ -160,20 +160,25 @@ fn slipping_derivatives_agree_with_finite_differences() {
         let (by_q, by_v, by_tau) = COIN.forward_dynamics_derivatives(&q, &v, &tau);
         let scale = by_q.amax().max(by_v.amax());
         for k in 0..6 {
-            let unit_step = |h: f64| SVector::<f64, 6>::from_fn(|i, _| if i == k { h } else { 0.0 });
+            let unit_direction_times =
+                |h: f64| SVector::<f64, 6>::from_fn(|i, _| if i == k { h } else { 0.0 });
             let five_point_derivative = |f: &dyn Fn(f64) -> SVector<f64, 6>, h: f64| {
                 ((f(h) - f(-h)) * 8.0 - (f(2.0 * h) - f(-2.0 * h))) / (12.0 * h)
             };
             let found = five_point_derivative(
-                &|h| COIN.forward_dynamics(&COIN.integrate(&q, &unit_step(h)), &v, &tau),
+                &|h| COIN.forward_dynamics(&COIN.integrate(&q, &unit_direction_times(h)), &v, &tau),
                 1e-4,
             );
             assert!((found - by_q.column(k)).amax() < 1e-6 * scale, "∂v̇/∂q {k}: {found} {}", by_q.column(k));
-            let found =
-                five_point_derivative(&|h| COIN.forward_dynamics(&q, &(v + unit_step(h)), &tau), 1e-4);
+            let found = five_point_derivative(
+                &|h| COIN.forward_dynamics(&q, &(v + unit_direction_times(h)), &tau),
+                1e-4,
+            );
             assert!((found - by_v.column(k)).amax() < 1e-6 * scale, "∂v̇/∂v {k}: {found} {}", by_v.column(k));
-            let found =
-                five_point_derivative(&|h| COIN.forward_dynamics(&q, &v, &(tau + unit_step(h))), 1e-4);
+            let found = five_point_derivative(
+                &|h| COIN.forward_dynamics(&q, &v, &(tau + unit_direction_times(h))),
+                1e-4,
+            );
             assert!((found - by_tau.column(k)).amax() < 1e-8 * by_tau.amax(), "∂v̇/∂τ {k}");
         }
     }

@@ -5,7 +5,7 @@ use linkwork::contact::Contacts;
 use linkwork::integrate::EventDriven;
 use linkwork::prelude::*;
 
-use crate::laws::{Chain, Pile, Random};
+use crate::laws::{DoublePendulumAboveFloor, Pile, Random};
 
 /// Follows a motion and checks that its energy does not grow and that surfaces do not penetrate. Returns the
 /// number of samples and the last configuration.
@@ -99,7 +99,7 @@ fn double_pendulum_on_the_floor_agrees_with_located_events() {
     let mut random = Random(9);
     for _ in 0..30 {
         let q = SVector::from([random.next() * 1.5, random.next() * 1.5]);
-        let m = Chain {
+        let m = DoublePendulumAboveFloor {
             friction: random.random_choice([0.0, 0.3, 0.7]),
             restitution: random.random_choice([0.0, 0.5]),
             height: 0.1 - (0.5 * q[0].sin() + 0.5 * (q[0] + q[1]).sin()).min(0.0),

@@ -57,7 +57,7 @@ pub struct BoxesInSwappedOrder {
 
 /// Log (capsule) across a fixed beam (box).
 #[mechanism(gravity = -9.81 * z)]
-struct Log {
+struct LogAcrossBeam {
     friction: f64,
     #[body(mass = 3, inertia = capsule(3, 0.05, 0.6, x))]
     log: Body,
@@ -149,7 +149,7 @@ pub fn position_with_gap(gap: impl Fn(Vector3<f64>) -> f64, far: Vector3<f64>, w
 #[test]
 fn box_gaps_are_distances_near_contact() {
     let (m, mut random) = (TwoBoxes { gravity: G, friction: 0.0, restitution: 0.0 }, Random(3));
-    let (log, mut beside) = (Log { friction: 0.0 }, 0);
+    let (log, mut beside) = (LogAcrossBeam { friction: 0.0 }, 0);
     let (low, bar) = (Matrix3::from_diagonal(&LOW.into()), Matrix3::from_diagonal(&[0.1, 1.0, 0.1].into()));
     for _ in 0..60 {
         let (turn, far) =
@@ -332,10 +332,10 @@ fn box_falling_on_an_edge_gains_no_energy() {
 /// Checks that a log across a beam rests on both edges of the beam's face, which carry its weight.
 #[test]
 fn log_across_a_beam_rests_on_both_edges() {
-    let m = Log { friction: 0.5 };
+    let m = LogAcrossBeam { friction: 0.5 };
     let q = [0.0, 0.0, 0.15, 0.0, 0.0, 0.0, 1.0].into();
     let forces = contact::acting(&m, 0.0, &q, &SVector::zeros(), &SVector::zeros()).unwrap();
-    let normal: Vec<f64> = Log::CONTACT_ROWS.iter().map(|row| forces[row.first]).collect();
+    let normal: Vec<f64> = LogAcrossBeam::CONTACT_ROWS.iter().map(|row| forces[row.first]).collect();
     assert!(
         (normal.iter().sum::<f64>() - 3.0 * G).abs() < 1e-5 && normal[2].min(normal[3]) > 0.5 * G,
         "{normal:?}"

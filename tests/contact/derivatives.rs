@@ -34,7 +34,7 @@ pub struct BallInHollow {
 
 /// Slider-crank whose crank pushes a piston onto a stop.
 #[mechanism(gravity = -9.81 * y, derivatives)]
-struct Engine {
+struct SliderCrankWithStop {
     #[body(mass = 2, com = 0.02 * x, inertia = rod(2, 0.04, x))]
     crank: Body,
     #[joint(ground -> crank, about = z)]
@@ -86,11 +86,12 @@ pub fn check_contact_derivatives<
     let held = contact_forward_dynamics(q, v, tau);
     assert!(found.a == held.a && found.forces == held.forces);
     for k in 0..NV {
-        let unit_step = |s: f64| SVector::<f64, NV>::from_fn(|i, _| if i == k { s } else { 0.0 });
+        let unit_direction_times = |s: f64| SVector::<f64, NV>::from_fn(|i, _| if i == k { s } else { 0.0 });
         let motion_at_displacement =
-            |s: f64| contact_forward_dynamics(&m.integrate(q, &unit_step(s)), v, tau);
-        let motion_at_velocity_step = |s: f64| contact_forward_dynamics(q, &(v + unit_step(s)), tau);
-        let motion_at_force_step = |s: f64| contact_forward_dynamics(q, v, &(tau + unit_step(s)));
+            |s: f64| contact_forward_dynamics(&m.integrate(q, &unit_direction_times(s)), v, tau);
+        let motion_at_velocity_step =
+            |s: f64| contact_forward_dynamics(q, &(v + unit_direction_times(s)), tau);
+        let motion_at_force_step = |s: f64| contact_forward_dynamics(q, v, &(tau + unit_direction_times(s)));
         for (what, expected, column) in [
             ("∂v̇/∂q", derivative_at_zero(|s| motion_at_displacement(s).a), found.by_q.column(k)),
             ("∂v̇/∂v", derivative_at_zero(|s| motion_at_velocity_step(s).a), found.by_v.column(k)),
@@ -155,7 +156,7 @@ fn contact_derivatives_in_windy_hollow_match_differences() {
 /// Derivatives of the contact force on a piston act through a closed loop.
 #[test]
 fn contact_derivatives_act_through_closed_loop() {
-    let m = Engine {};
+    let m = SliderCrankWithStop {};
     let q = m.assemble(&[0.6, -0.8, 0.2].into(), &[0]).unwrap();
     let v = m.complete_velocity(&q, &[3.0, 0.0, 5.0].into(), &[0, 2]).unwrap();
     for touch in [Touch::Sticks, Touch::Open] {
@@ -226,17 +227,22 @@ fn redundant_contact_forces_of_a_table_have_derivatives() {
     let acceleration_on_table =
         |q, v, tau| contact::forward_dynamics(&m, 0.0, &q, &v, &tau, &touches).unwrap().a;
     for k in 0..7 {
-        let unit_step = |s: f64| SVector::<f64, 7>::from_fn(|i, _| if i == k { s } else { 0.0 });
+        let unit_direction_times = |s: f64| SVector::<f64, 7>::from_fn(|i, _| if i == k { s } else { 0.0 });
         let mut columns = vec![
             (
-                derivative_at_zero(|s| acceleration_on_table(m.integrate(&q, &unit_step(s)), v, tau)),
+                derivative_at_zero(|s| {
+                    acceleration_on_table(m.integrate(&q, &unit_direction_times(s)), v, tau)
+                }),
                 found.by_q.column(k),
             ),
-            (derivative_at_zero(|s| acceleration_on_table(q, v, tau + unit_step(s))), found.by_tau.column(k)),
+            (
+                derivative_at_zero(|s| acceleration_on_table(q, v, tau + unit_direction_times(s))),
+                found.by_tau.column(k),
+            ),
         ];
         if !(3..6).contains(&k) {
             columns.push((
-                derivative_at_zero(|s| acceleration_on_table(q, v + unit_step(s), tau)),
+                derivative_at_zero(|s| acceleration_on_table(q, v + unit_direction_times(s), tau)),
                 found.by_v.column(k),
             ));
         }
@@ -249,7 +255,7 @@ fn redundant_contact_forces_of_a_table_have_derivatives() {
 
 /// Quadruped with points as feet, a contact that other engines support, too.
 #[mechanism(urdf = "../models/urdf/solo12.urdf", base = free, gravity = -9.81 * z, derivatives)]
-pub struct OnPoints {
+pub struct QuadrupedOnPointFeet {
     #[contact(FL_FOOT, ground.plane(z), friction = 0.8)]
     front_left: Contact,
     #[contact(HR_FOOT, ground.plane(z), friction = 0.8)]
@@ -262,7 +268,7 @@ pub struct OnPoints {
 #[test]
 fn quadruped_contact_derivatives_agree_with_pinocchio() {
     let (q, v, tau) = quadruped_state_and_torques();
-    let m = OnPoints {};
+    let m = QuadrupedOnPointFeet {};
     let touches = [Touch::Sticks; 2];
     let found = contact::forward_dynamics_derivatives(&m, 0.0, &q, &v, &tau, &touches).unwrap();
     let w = SVector::<f64, 18>::from_fn(|k, _| (0.7 * k as f64 + 0.3).cos());
@@ -373,7 +379,7 @@ fn quadruped_contact_derivatives_agree_with_pinocchio() {
 fn steps_with_fixed_contact_modes_have_exact_jacobians() {
     use discrete::DifferentiableStep;
     let (q, v, _) = quadruped_state_and_torques();
-    let m = OnPoints {};
+    let m = QuadrupedOnPointFeet {};
     let touches = [Touch::Sticks, Touch::Slips];
     // The state is that after a touchdown: sticking points have no velocity.
     let mut q = q;
@@ -381,7 +387,7 @@ fn steps_with_fixed_contact_modes_have_exact_jacobians() {
     q[2] += 0.01;
 
     fn check_step_derivatives<S: DifferentiableStep<f64>>(
-        m: &contact::Holding<'_, OnPoints, f64, 2, 6>,
+        m: &contact::Holding<'_, QuadrupedOnPointFeet, f64, 2, 6>,
         method: &S,
         (q, v): (&SVector<f64, 19>, &SVector<f64, 18>),
     ) {
@@ -389,18 +395,18 @@ fn steps_with_fixed_contact_modes_have_exact_jacobians() {
         let next = discrete::transition(m, method, 0.0, q, v, &u).unwrap();
         let state_change_over_step = |q: &SVector<f64, 19>, v: &SVector<f64, 18>, u: &SVector<f64, 12>| {
             let (q, v) = discrete::step(m, method, 0.0, q, v, u).unwrap();
-            let moved = OnPoints {}.difference(&next.q, &q);
+            let moved = QuadrupedOnPointFeet {}.difference(&next.q, &q);
             SVector::<f64, 36>::from_fn(|k, _| if k < 18 { moved[k] } else { v[k - 18] })
         };
         let (a, b) = (next.a::<36>(), next.b::<36>());
         for k in 0..36 {
-            let unit_step = |s: f64, first: usize| {
+            let unit_direction_times = |s: f64, first: usize| {
                 SVector::<f64, 18>::from_fn(|i, _| if i + first == k { s } else { 0.0 })
             };
             let expected = derivative_at_zero(|s| {
                 state_change_over_step(
-                    &OnPoints {}.integrate(q, &unit_step(s, 0)),
-                    &(v + unit_step(s, 18)),
+                    &QuadrupedOnPointFeet {}.integrate(q, &unit_direction_times(s, 0)),
+                    &(v + unit_direction_times(s, 18)),
                     &u,
                 )
             });
@@ -453,10 +459,12 @@ fn touchdown_has_exact_derivatives() {
             m.mass_matrix(0.0, q) * (found.v - v) - m.contact_jacobian(0.0, q).transpose() * found.impulses;
         assert!(M::CONSTRAINED || balance.amax() < 1e-10, "{balance}");
         for k in 0..NV {
-            let unit_step = |s: f64| SVector::<f64, NV>::from_fn(|i, _| if i == k { s } else { 0.0 });
+            let unit_direction_times =
+                |s: f64| SVector::<f64, NV>::from_fn(|i, _| if i == k { s } else { 0.0 });
             let touchdown_at_displacement =
-                |s: f64| velocity_after_touchdown(&m.integrate(q, &unit_step(s)), v);
-            let touchdown_at_velocity_step = |s: f64| velocity_after_touchdown(q, &(v + unit_step(s)));
+                |s: f64| velocity_after_touchdown(&m.integrate(q, &unit_direction_times(s)), v);
+            let touchdown_at_velocity_step =
+                |s: f64| velocity_after_touchdown(q, &(v + unit_direction_times(s)));
             let of_velocity = [
                 (derivative_at_zero(|s| touchdown_at_displacement(s).v), found.by_q.column(k)),
                 (derivative_at_zero(|s| touchdown_at_velocity_step(s).v), found.by_v.column(k)),
@@ -482,7 +490,7 @@ fn touchdown_has_exact_derivatives() {
     let (q, v, _) = quadruped_state_and_torques();
     use Touch::{Open, Slips, Sticks};
     check_touchdown_derivatives(&Solo {}, (&q, &v), &[Sticks, Open, Slips, Sticks]);
-    let m = Engine {};
+    let m = SliderCrankWithStop {};
     let q = m.assemble(&[0.6, -0.8, 0.2].into(), &[0]).unwrap();
     let v = m.complete_velocity(&q, &[3.0, 0.0, 5.0].into(), &[0, 2]).unwrap();
     check_touchdown_derivatives(&m, (&q, &v), &[Sticks]);

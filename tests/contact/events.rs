@@ -226,7 +226,7 @@ fn pushed_crate_tips_before_it_slides() {
 }
 
 #[mechanism(gravity = -9.81 * y)]
-struct Housner {
+struct RockingBlock {
     friction: f64,
     #[body(mass = 3, inertia = cuboid(3, 0.1, 0.5, 0.1))]
     block: Body,
@@ -243,7 +243,7 @@ struct Housner {
 /// behavior of inverted pendulum structures during earthquakes*, 1963).
 #[test]
 fn rocking_block_follows_housners_model() {
-    let m = Housner { friction: 5.0 };
+    let m = RockingBlock { friction: 5.0 };
     let (half, height) = (0.05_f64, 0.25_f64);
     let (alpha, radius) = ((half / height).atan(), half.hypot(height));
     let tilt = 0.5 * alpha;

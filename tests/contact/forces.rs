@@ -51,7 +51,7 @@ fn friction_opposes_a_sliding_sphere() {
 }
 
 #[mechanism(gravity = -9.81 * z)]
-struct Table {
+struct LoadOnTable {
     #[body(mass = 3, inertia = cuboid(3, 1, 0.6, 0.1))]
     top: Body,
     #[joint(ground -> top)]
@@ -74,7 +74,7 @@ struct Table {
 /// surfaces.
 #[test]
 fn contact_force_outputs_act_on_the_first_surface() {
-    let m = Table {};
+    let m = LoadOnTable {};
     let q: [f64; 14] = core::array::from_fn(|k| {
         if k == 2 {
             0.05
@@ -93,7 +93,7 @@ fn contact_force_outputs_act_on_the_first_surface() {
 }
 
 #[mechanism(gravity = -9.81 * z)]
-struct Piston {
+struct SliderCrankWithStop {
     #[body(mass = 0.5, inertia = rod(0.5, 0.04, x))]
     crank: Body,
     #[joint(ground -> crank, about = z)]
@@ -119,7 +119,7 @@ struct Piston {
 /// Through a closed loop, virtual work of the motor equals virtual work of the force at the stop.
 #[test]
 fn motor_presses_a_piston_onto_its_stop() {
-    let m = Piston {};
+    let m = SliderCrankWithStop {};
     // Angle of the crank with the piston at its stop.
     let angle = ((0.04_f64.powi(2) + 0.165_f64.powi(2) - 0.13_f64.powi(2)) / (2.0 * 0.04 * 0.165)).acos();
     let guess = m.neutral();
@@ -139,7 +139,7 @@ fn motor_presses_a_piston_onto_its_stop() {
 /// and with slip. At rest they equal the forces of the complementarity conditions.
 #[test]
 fn prescribed_closed_contacts_remain_closed() {
-    let m = Table {};
+    let m = LoadOnTable {};
     let mut q = m.neutral();
     (q[2], q[9]) = (0.05, 0.1);
     let mut tau = SVector::<f64, 12>::from_fn(|k, _| f64::from(k as u32 % 5) - 2.0);
@@ -159,7 +159,7 @@ fn prescribed_closed_contacts_remain_closed() {
         assert!(left.amax() < 1e-9, "{left}");
         let (rates, slip) = (g * found.a + b, m.contact_rates(&q, &v));
         for (k, touch) in touches.iter().enumerate() {
-            let contact::Rows { first, .. } = Table::CONTACT_ROWS[k];
+            let contact::Rows { first, .. } = LoadOnTable::CONTACT_ROWS[k];
             let force = found.forces.fixed_rows::<3>(first);
             match touch {
                 Touch::Open => assert_eq!(force.norm(), 0.0),

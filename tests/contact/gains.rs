@@ -1,7 +1,7 @@
 //! Bilaterally enforced contacts with stabilization gains: decay of gaps and contact velocities, and steps
 //! with given accelerations.
 
-use super::derivatives::{OnPoints, quadruped_state_and_torques};
+use super::derivatives::{QuadrupedOnPointFeet, quadruped_state_and_torques};
 use linkwork::contact::{self, Touch};
 use linkwork::discrete;
 use linkwork::nalgebra::{Quaternion, UnitQuaternion, Vector3};
@@ -12,7 +12,7 @@ use linkwork::prelude::*;
 #[test]
 fn gaps_of_fixed_contacts_decay_with_gains() {
     let (mut q, _, _) = quadruped_state_and_torques();
-    let m = OnPoints {};
+    let m = QuadrupedOnPointFeet {};
     q[2] -= m.contact_gaps(&q)[0] - 1e-3;
     let simulate_held_contact = |rate: f64| {
         let held = contact::hold(&m, [Touch::Sticks, Touch::Open]).stabilized(rate);
@@ -29,7 +29,7 @@ fn gaps_of_fixed_contacts_decay_with_gains() {
 #[test]
 fn contact_velocities_decay_with_a_separate_gain() {
     let (q, _, _) = quadruped_state_and_torques();
-    let m = OnPoints {};
+    let m = QuadrupedOnPointFeet {};
     // The foot moves down together with the whole robot.
     let turned = UnitQuaternion::from_quaternion(Quaternion::new(q[6], q[3], q[4], q[5]));
     let down = turned.inverse_transform_vector(&Vector3::new(0.0, 0.0, -0.1));
@@ -47,7 +47,7 @@ fn contact_velocities_decay_with_a_separate_gain() {
 #[test]
 fn steps_accept_precomputed_accelerations() {
     let (q, v, _) = quadruped_state_and_torques();
-    let (m, touches, h) = (OnPoints {}, [Touch::Sticks, Touch::Slips], 2e-3);
+    let (m, touches, h) = (QuadrupedOnPointFeet {}, [Touch::Sticks, Touch::Slips], 2e-3);
     let held = contact::hold(&m, touches).with_gains(0.0, 50.0);
     let u = SVector::<f64, 12>::from_fn(|k, _| 0.4 * (0.9 * k as f64).cos());
     let tau = m.generalized_forces(&q, &u);

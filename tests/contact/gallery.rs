@@ -238,7 +238,7 @@ fn valve_chatters_with_closed_form_flights() {
 /// One-way clutch, or silent ratchet: a strut hinged 0.1 m above a slide, whose tip a torque of 0.3 N·m
 /// presses on the slide.
 #[mechanism]
-struct Clutch {
+struct OneWayClutch {
     friction: f64,
     /// Angle of the strut with the vertical, rad.
     lean: f64,
@@ -263,11 +263,11 @@ struct Clutch {
 /// less friction it slips in both.
 #[test]
 fn leaning_strut_acts_as_a_one_way_clutch() {
-    let simulate_clutch = |m: &Clutch, load: f64, speed: f64, t: f64| {
+    let simulate_clutch = |m: &OneWayClutch, load: f64, speed: f64, t: f64| {
         let steps = simulate(m).from([0.0, -m.lean], [speed, 0.0]).inputs(move |_, _, _| [load].into());
         steps.method(TimeStepping::step(1e-4)).duration(t).finish().unwrap()
     };
-    let m = Clutch { friction: 0.3, lean: 0.25_f64.atan() };
+    let m = OneWayClutch { friction: 0.3, lean: 0.25_f64.atan() };
     let (sin, cos) = m.lean.sin_cos();
     let length = 0.1 / cos;
     let contacts = m.contact_gaps(&[0.0, -m.lean].into());
@@ -281,7 +281,7 @@ fn leaning_strut_acts_as_a_one_way_clutch() {
     let free = simulate_clutch(&m, -5.0, 0.0, 0.2);
     let drag = 0.3 * 0.3 / (length * (sin + 0.3 * cos));
     assert!((free.v[0] + (5.0 - drag) / 2.0 * 0.2).abs() < 1e-6, "{free:?} {drag}");
-    let slippery = Clutch { friction: 0.2, ..m };
+    let slippery = OneWayClutch { friction: 0.2, ..m };
     let drag = 0.2 * 0.3 / (length * (sin - 0.2 * cos));
     let slips = simulate_clutch(&slippery, drag + 4.0, 0.0, 0.2);
     assert!((slips.v[0] - 0.4).abs() < 1e-6, "{slips:?} {drag}");

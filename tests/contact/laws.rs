@@ -109,7 +109,7 @@ pub struct Pile {
 
 /// Double pendulum whose tip collides with the floor.
 #[mechanism(gravity = -9.81 * y)]
-pub struct Chain {
+pub struct DoublePendulumAboveFloor {
     pub friction: f64,
     pub restitution: f64,
     #[body(mass = 1, com = 0.25 * x, inertia = rod(1, 0.5, x))]

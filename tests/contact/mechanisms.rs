@@ -4,7 +4,7 @@ use linkwork::contact;
 use linkwork::prelude::*;
 
 #[mechanism]
-struct Elbow {
+struct ArmWithElbowStop {
     #[body(mass = 2, com = 0.25 * x, inertia = rod(2, 0.5, x))]
     upper: Body,
     #[body(mass = 1.5, com = 0.2 * x, inertia = rod(1.5, 0.4, x))]
@@ -22,7 +22,7 @@ struct Elbow {
 /// A constant torque presses the elbow onto its stop, where it stays until the torque is reversed.
 #[test]
 fn elbow_rests_at_its_stop_under_torque() {
-    let m = Elbow {};
+    let m = ArmWithElbowStop {};
     let applied_push = |t: f64| if t < 1.0 { 2.0 } else { -2.0 };
     let run = simulate(&m)
         .from([0.1, 0.0], [0.3, 0.0])
@@ -45,13 +45,13 @@ fn elbow_rests_at_its_stop_under_torque() {
 /// The velocity after the impact at the stop is v − M⁻¹ e (1 + r) vₑ / (M⁻¹)ₑₑ.
 #[test]
 fn impact_at_a_stop_has_the_closed_form_velocity() {
-    let m = Elbow {};
+    let m = ArmWithElbowStop {};
     let (q, v) = ([0.4, 0.5].into(), SVector::from([0.7, 1.3]));
     let found = contact::impact(&m, 0.0, &q, &v).unwrap();
     let inverse = m.mass_matrix(&q).try_inverse().unwrap();
     let expected = v - inverse.column(1) * v[1] / inverse[(1, 1)];
     assert!((found.v - expected).norm() < 1e-13, "{}", found.v);
-    assert_eq!(Elbow::CONTACTS, ["stop.from", "stop.to"]);
+    assert_eq!(ArmWithElbowStop::CONTACTS, ["stop.from", "stop.to"]);
     assert!((found.impulses[1] - v[1] / inverse[(1, 1)]).abs() < 1e-13 && found.impulses[0] == 0.0);
 }
 
@@ -171,7 +171,7 @@ fn taut_rope_over_a_wheel_equalises_speeds() {
 
 /// Two gear wheels, one of which drives the other by teeth with backlash.
 #[mechanism]
-struct Gears {
+struct GearsWithBacklash {
     play: f64,
     restitution: f64,
     #[body(mass = 1, inertia = diagonal(1, 1, 0.02))]
@@ -195,7 +195,7 @@ fn gear_backlash_impacts_follow_restitution() {
     let approach_speed_of_teeth = |v: &SVector<f64, 2>| 0.1 * v[0] + 0.05 * v[1];
     let start = SVector::from([3.0, 1.0]);
     for (restitution, impacts) in [(1.0, 4), (0.5, 3), (0.0, 1)] {
-        let m = Gears { play: 0.004, restitution };
+        let m = GearsWithBacklash { play: 0.004, restitution };
         let method = EventDriven::new().tolerance(1e-12, 1e-12);
         // The first impact follows from the middle of the play; the later ones cross the whole play with
         // decreasing speed.

@@ -44,7 +44,14 @@ heap!(Backwards:
 
 /// Returns the maximum difference between the motions of two mechanisms in one step of `h` seconds, m/s and
 /// rad/s, over `steps` states along the motion of the first one.
-fn maximum_difference_of_one_step<A, B, const N: usize, const NV: usize, const NK: usize, const NR: usize>(
+fn one_step_difference_of_mechanisms<
+    A,
+    B,
+    const N: usize,
+    const NV: usize,
+    const NK: usize,
+    const NR: usize,
+>(
     (one, other): (&A, &B),
     (mut q, mut v): (SVector<f64, N>, SVector<f64, NV>),
     (h, steps): (f64, usize),
@@ -83,7 +90,7 @@ fn declaration_order_of_contacts_has_no_effect() {
         let mut v = SVector::<f64, 12>::zeros();
         v.fixed_rows_mut::<3>(6).copy_from(&(turn.inverse() * Vector3::new(0.0, 0.0, -1.0)));
         let other = BoxesInSwappedOrder { gravity: 9.81, friction, restitution };
-        most[0] = most[0].max(maximum_difference_of_one_step((&m, &other), (q, v), run));
+        most[0] = most[0].max(one_step_difference_of_mechanisms((&m, &other), (q, v), run));
 
         let m = Heap { friction, restitution };
         let mut q = m.neutral();
@@ -91,7 +98,7 @@ fn declaration_order_of_contacts_has_no_effect() {
         (0..4).for_each(|i| q[3 + i] = turn.coords[i]);
         let mut v = SVector::<f64, 12>::zeros();
         (v[0], v[3], v[8]) = (-1.0, random.next(), -1.0);
-        most[1] = most[1].max(maximum_difference_of_one_step(
+        most[1] = most[1].max(one_step_difference_of_mechanisms(
             (&m, &Backwards { friction, restitution }),
             (q, v),
             run,
@@ -113,7 +120,7 @@ fn flat_landing_boxes_stay_level() {
         let q = configuration_of_boxes(&m, [at[0], at[1], 0.1261], UnitQuaternion::identity());
         let mut v = SVector::<f64, 12>::zeros();
         v[8] = -1.9;
-        let most = maximum_difference_of_one_step((&m, &other), (q, v), (2e-3, 2));
+        let most = one_step_difference_of_mechanisms((&m, &other), (q, v), (2e-3, 2));
         assert!(most < 1e-8, "{most} at {at:?}");
         let step = TimeStepping::step(2e-3);
         let end = simulate(&m).from(q, v).method(step).duration(2e-3).finish().unwrap();
@@ -138,7 +145,7 @@ fn contact_order_has_no_effect_with_strong_friction() {
         (0..4).for_each(|i| q[3 + i] = turn.coords[i]);
         let mut v = SVector::<f64, 12>::zeros();
         (v[0], v[3], v[8]) = (-1.0, random.next(), -1.0);
-        most = most.max(maximum_difference_of_one_step(
+        most = most.max(one_step_difference_of_mechanisms(
             (&m, &Backwards { friction, restitution }),
             (q, v),
             (2e-3, 60),
@@ -149,7 +156,7 @@ fn contact_order_has_no_effect_with_strong_friction() {
 
 /// Simulates a drop with steps of `h` seconds. Returns the maximum growth of the energy in a step, J, and the
 /// deepest overlap, m.
-fn drop(restitution: f64, seed: u64, h: f64) -> (f64, f64) {
+fn drop_energy_growth_and_overlap(restitution: f64, seed: u64, h: f64) -> (f64, f64) {
     let mut random = Random(seed);
     let m = TwoBoxes { gravity: 9.81, friction: 0.5, restitution };
     let turn = random_rotation(&mut random);
@@ -176,7 +183,7 @@ fn drop(restitution: f64, seed: u64, h: f64) -> (f64, f64) {
 fn dropped_bodies_gain_no_energy() {
     let h = 2e-3;
     for (k, restitution) in [0.0, 0.5, 1.0, 0.0, 1.0].into_iter().enumerate() {
-        let (gain, least) = drop(restitution, 20 + k as u64, h);
+        let (gain, least) = drop_energy_growth_and_overlap(restitution, 20 + k as u64, h);
         assert!(gain < 25.0 * h * h, "{k}: {gain}");
         assert!(least > -4.0 * h, "{k}: {least}");
     }

@@ -6,7 +6,7 @@ use linkwork::prelude::*;
 use linkwork::{Derivatives, Sensitivities, discrete};
 
 /// Access to a parameter of a mechanism.
-type Parameter<M> = fn(&mut M) -> &mut f64;
+type ParameterAccess<M> = fn(&mut M) -> &mut f64;
 
 /// Ball above a floor. All of its values are parameters.
 #[mechanism(gravity = -g * z, derivatives, sensitivities)]
@@ -35,7 +35,7 @@ struct Ball {
 
 const BALL: Ball =
     Ball { g: 9.7, m: 0.6, radius: 0.1, height: 0.05, friction: 0.4, restitution: 0.0, rolling: 0.002 };
-const OF_BALL: [Parameter<Ball>; 7] = [
+const OF_BALL: [ParameterAccess<Ball>; 7] = [
     |ball| &mut ball.g,
     |ball| &mut ball.m,
     |ball| &mut ball.radius,
@@ -62,13 +62,13 @@ struct Block {
     foot: Contact,
 }
 
-const OF_BLOCK: [Parameter<Block>; 3] =
+const OF_BLOCK: [ParameterAccess<Block>; 3] =
     [|block| &mut block.friction, |block| &mut block.m, |block| &mut block.restitution];
 
 /// Ball on a box with three feet.
 #[mechanism(gravity = -9.81 * z, derivatives, sensitivities)]
 #[derive(Clone, Copy)]
-struct Stack {
+struct BallOnBox {
     m: f64,
     width: f64,
     low_friction: f64,
@@ -138,7 +138,7 @@ fn stepping_methods(h: f64) -> [TimeStepping<f64>; 2] {
 fn check_parameter_columns<M, const NQ: usize, const NV: usize, const NU: usize, const NP: usize>(
     what: &str,
     m: M,
-    (method, parameters): (&TimeStepping<f64>, [Parameter<M>; NP]),
+    (method, parameters): (&TimeStepping<f64>, [ParameterAccess<M>; NP]),
     (q, v, u): (&SVector<f64, NQ>, &SVector<f64, NV>, &SVector<f64, NU>),
     (h, skipped): (f64, &[usize]),
 ) where
@@ -147,13 +147,14 @@ fn check_parameter_columns<M, const NQ: usize, const NV: usize, const NU: usize,
     let (by_q, by_v) = discrete::by_parameters(&m, method, 0.0, q, v, u).unwrap();
     let (end, _) = discrete::step(&m, method, 0.0, q, v, u).unwrap();
     for (k, parameter) in parameters.iter().enumerate().filter(|(k, _)| !skipped.contains(k)) {
-        let end_of_step = |s: f64| {
+        let step_end_at_parameter_change = |s: f64| {
             let mut other = m;
             *parameter(&mut other) += s;
             let (q, v) = discrete::step(&other, method, 0.0, q, v, u).unwrap();
             [m.difference(&end, &q), v]
         };
-        let [one, two, three] = [1.0, 2.0, 3.0].map(|n| (end_of_step(n * h), end_of_step(-n * h)));
+        let [one, two, three] = [1.0, 2.0, 3.0]
+            .map(|n| (step_end_at_parameter_change(n * h), step_end_at_parameter_change(-n * h)));
         for (block, found) in [by_q.column(k), by_v.column(k)].into_iter().enumerate() {
             let difference_of_pair = |(after, before): &([SVector<f64, NV>; 2], [SVector<f64, NV>; 2])| {
                 after[block] - before[block]
@@ -201,26 +202,44 @@ fn ball_step_derivatives_by_parameters_match_differences() {
             (q[0], q[2]) = (0.1, BALL.height + BALL.radius + gap);
             q
         };
-        let check_ball = |what: &str, m: Ball, gap: f64, v: [f64; 6], skipped: &[usize]| {
+        let check_ball_parameter_columns = |what: &str, m: Ball, gap: f64, v: [f64; 6], skipped: &[usize]| {
             let state = (&state_at_gap(gap), &v.into(), &SVector::zeros());
             check_parameter_columns(what, m, (&method, OF_BALL), state, (1e-5, skipped));
         };
-        check_ball("separated", BALL, 1.0, [1.0, 0.0, -2.0, 1.0, 2.0, 3.0], &[5]);
-        check_ball("lands and sticks", BALL, 0.005, [0.1, 0.3, -1.0, -3.0, 1.0, 0.3], &[5]);
-        check_ball("lands and slides", BALL, 0.005, [2.0, 0.3, -1.0, -20.0, 2.0, 0.3], &[5]);
+        check_ball_parameter_columns("separated", BALL, 1.0, [1.0, 0.0, -2.0, 1.0, 2.0, 3.0], &[5]);
+        check_ball_parameter_columns("lands and sticks", BALL, 0.005, [0.1, 0.3, -1.0, -3.0, 1.0, 0.3], &[5]);
+        check_ball_parameter_columns(
+            "lands and slides",
+            BALL,
+            0.005,
+            [2.0, 0.3, -1.0, -20.0, 2.0, 0.3],
+            &[5],
+        );
         // Radius and height open or close the gap of a ball on the floor.
-        check_ball("slides", BALL, 0.0, [1.0, 0.2, 0.0, 0.0, 20.0, 0.3], &[2, 3, 5]);
-        check_ball("rolls", BALL, 0.0, [1.0, 0.0, 0.0, 0.0, 10.0, 0.3], &[2, 3, 5]);
+        check_ball_parameter_columns("slides", BALL, 0.0, [1.0, 0.2, 0.0, 0.0, 20.0, 0.3], &[2, 3, 5]);
+        check_ball_parameter_columns("rolls", BALL, 0.0, [1.0, 0.0, 0.0, 0.0, 10.0, 0.3], &[2, 3, 5]);
         let elastic = Ball { restitution: 0.6, ..BALL };
-        check_ball("bounces and sticks", elastic, 0.005, [0.1, 0.3, -2.0, -3.0, 1.0, 0.3], &[]);
-        check_ball("bounces and slides", elastic, 0.005, [2.0, 0.3, -1.0, -20.0, 2.0, 0.3], &[]);
+        check_ball_parameter_columns(
+            "bounces and sticks",
+            elastic,
+            0.005,
+            [0.1, 0.3, -2.0, -3.0, 1.0, 0.3],
+            &[],
+        );
+        check_ball_parameter_columns(
+            "bounces and slides",
+            elastic,
+            0.005,
+            [2.0, 0.3, -1.0, -20.0, 2.0, 0.3],
+            &[],
+        );
     }
 }
 
 #[test]
 fn stack_step_derivatives_by_parameters_match_differences() {
-    let m = Stack { m: 2.0, width: 0.3, low_friction: 0.4, high_friction: 0.3, radius: 0.1 };
-    let of_stack: [Parameter<Stack>; 5] = [
+    let m = BallOnBox { m: 2.0, width: 0.3, low_friction: 0.4, high_friction: 0.3, radius: 0.1 };
+    let of_stack: [ParameterAccess<BallOnBox>; 5] = [
         |m| &mut m.m,
         |m| &mut m.width,
         |m| &mut m.low_friction,
@@ -245,7 +264,7 @@ fn stack_step_derivatives_by_parameters_match_differences() {
 
 #[test]
 fn leg_step_derivatives_by_parameters_match_differences() {
-    let of_leg: [Parameter<Leg>; 5] = [
+    let of_leg: [ParameterAccess<Leg>; 5] = [
         |m| &mut m.stiffness,
         |m| &mut m.length,
         |m| &mut m.friction,
@@ -281,7 +300,7 @@ where
     M: Derivatives<NV, NV, NU, Scalar = f64> + Sensitivities<NV, NV, NU, NP, Scalar = f64>,
 {
     let (mut q_by, mut v_by) = (SMatrix::zeros(), SMatrix::zeros());
-    let one_step = |k: usize| {
+    let step_with_parameter_derivatives = |k: usize| {
         let u = input(k);
         let step = discrete::transition(m, method, 0.0, &q, &v, &u).unwrap();
         let direct = discrete::by_parameters(m, method, 0.0, &q, &v, &u).unwrap();
@@ -292,7 +311,7 @@ where
         (q, v) = (step.q, step.v);
         (q, q_by)
     };
-    (0..n).map(one_step).collect()
+    (0..n).map(step_with_parameter_derivatives).collect()
 }
 
 /// Force on the block in a step: pushes to and fro.
@@ -313,7 +332,7 @@ fn parameter_gradients_through_contact_rollouts_agree_with_differences() {
         let found = rollout_with_parameter_derivatives(&m, &method, start_of_block(), push_in_step, 100);
         let (_, by_parameters) = found[99];
         for (k, parameter) in OF_BLOCK.iter().enumerate() {
-            let final_place = |s: f64| {
+            let final_place_at_parameter_change = |s: f64| {
                 let (mut other, (mut q, mut v)) = (m, start_of_block());
                 *parameter(&mut other) += s;
                 for k in 0..100 {
@@ -322,7 +341,8 @@ fn parameter_gradients_through_contact_rollouts_agree_with_differences() {
                 q
             };
             let h = 2e-5;
-            let expected = (final_place(h) - final_place(-h)) / (2.0 * h);
+            let expected =
+                (final_place_at_parameter_change(h) - final_place_at_parameter_change(-h)) / (2.0 * h);
             let off = (by_parameters.column(k) - expected).amax();
             assert!(off < 1e-7 * (1.0 + expected.amax()), "{k}: {off:e} {by_parameters} {expected}");
         }
@@ -371,7 +391,7 @@ fn time_stepping_without_contacts_has_parameter_derivatives() {
         wind: Force,
     }
     let m = Pendulum { m: 0.5, length: 0.8 };
-    let of_pendulum: [Parameter<Pendulum>; 2] = [|m| &mut m.m, |m| &mut m.length];
+    let of_pendulum: [ParameterAccess<Pendulum>; 2] = [|m| &mut m.m, |m| &mut m.length];
     let q = m.integrate(&m.neutral(), &[0.3, 0.4, 0.5].into());
     for method in stepping_methods(0.05) {
         let state = (&q, &[1.0, 2.0, -1.0].into(), &[0.7].into());

@@ -37,7 +37,7 @@ fn stacked_boxes_remain_standing() {
 
 /// House of two cards that lean on each other: the edge of the left card touches the face of the right one.
 #[mechanism(gravity = -9.81 * y)]
-struct Cards {
+struct TwoLeaningCards {
     floor: f64,
     faces: f64,
     #[body(mass = 0.01, inertia = rod(0.01, 0.1, y))]
@@ -72,7 +72,7 @@ fn leaning_cards_have_closed_form_forces() {
     ]);
     let needed = [lean.tan() / 2.0, lean.tan()];
     let largest_displacement = |floor: f64, faces: f64| {
-        let m = Cards { floor: needed[0] * floor, faces: needed[1] * faces };
+        let m = TwoLeaningCards { floor: needed[0] * floor, faces: needed[1] * faces };
         assert!(m.contact_gaps(&q).amax() < 1e-16);
         let run = simulate(&m).from(q, [0.0; 6]).method(TimeStepping::step(1e-3)).duration(0.2);
         (run.finish().unwrap().q - q).amax()
@@ -84,7 +84,7 @@ fn leaning_cards_have_closed_form_forces() {
 
 /// House of seven cards: two pairs that lean on each other support a roof, on which a third pair stands.
 #[mechanism(gravity = -9.81 * y)]
-struct House {
+struct HouseOfSevenCards {
     friction: f64,
     #[body(mass = 0.01, inertia = rod(0.01, 0.1, y))]
     left: [Body; 3],
@@ -125,7 +125,7 @@ fn house_of_cards_remains_standing() {
     }
     q[19] = 0.1 * cosine;
     let largest_displacement = |friction: f64| {
-        let m = House { friction };
+        let m = HouseOfSevenCards { friction };
         assert!(m.contact_gaps(&q).amax() < 1e-15, "{}", m.contact_gaps(&q));
         let run = simulate(&m).from(q, [0.0; 21]).method(TimeStepping::step(1e-3)).duration(1.0);
         (run.finish().unwrap().q - q).amax()

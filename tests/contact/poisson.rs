@@ -190,7 +190,7 @@ struct Block {
 }
 
 #[mechanism(gravity = -9.81 * y)]
-struct Pendulum {
+struct DoublePendulumAboveFloor {
     friction: f64,
     restitution: f64,
     #[body(mass = 1, com = 0.25 * x, inertia = rod(1, 0.5, x))]
@@ -252,7 +252,8 @@ fn poisson_impacts_satisfy_contact_conditions() {
         let (a, b) = (random.next() * 3.0, random.next() * 3.0);
         let height = -(0.5 * a.sin() + 0.5 * (a + b).sin());
         let friction = random.random_choice([0.0, 0.3, 0.7, 3.0]);
-        let m = Pendulum { friction, restitution: random.random_choice([0.5, 0.9, 1.0]), height };
+        let m =
+            DoublePendulumAboveFloor { friction, restitution: random.random_choice([0.5, 0.9, 1.0]), height };
         check_impact_conditions(&m, &[a, b].into(), &random.random_vector(3.0));
     }
 }

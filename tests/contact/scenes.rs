@@ -73,8 +73,8 @@ fn random_scenes_of_two_bricks_complete() {
     for seed in 0..count {
         let mut random = Random(seed);
         (0..3).for_each(|_| _ = random.next());
-        let mut size = || 0.06 + 0.04 * random.next();
-        let [a, b, c] = [size(), size(), size()];
+        let mut random_brick_edge = || 0.06 + 0.04 * random.next();
+        let [a, b, c] = [random_brick_edge(), random_brick_edge(), random_brick_edge()];
         let m = Bricks {
             mass: 0.5,
             ratio: 100.0_f64.powf(random.next()),

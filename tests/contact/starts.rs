@@ -90,7 +90,7 @@ fn simulations_reject_overlapping_starts() {
 
 /// Slider-crank whose slide is limited by a stop.
 #[mechanism]
-struct Crank {
+struct SliderCrankWithStop {
     #[body(mass = 1, com = 0.05 * x, inertia = rod(1, 0.1, x))]
     crank: Body,
     #[joint(ground -> crank, about = z)]
@@ -113,7 +113,7 @@ struct Crank {
 /// follows from the law of cosines.
 #[test]
 fn overlap_removal_keeps_loops_closed() {
-    let m = Crank {};
+    let m = SliderCrankWithStop {};
     let crank_configuration = |angle: f64| {
         let rod = -(angle.sin() / 3.0).asin();
         SVector::from([angle, rod - angle, 0.1 * angle.cos() + 0.3 * rod.cos()])

@@ -55,7 +55,7 @@ struct Crate {
 
 /// Ball with static friction and friction moments.
 #[mechanism(gravity = -9.81 * z, derivatives)]
-struct Bowl {
+struct RollingBall {
     restitution: f64,
     #[body(mass = 0.5, inertia = sphere(0.5, 0.05))]
     ball: Body,
@@ -75,7 +75,7 @@ struct Bowl {
 
 /// Ball on a crate with three feet, whose normal forces are determinate.
 #[mechanism(gravity = -9.81 * z, derivatives)]
-struct Stack {
+struct BallOnCrate {
     #[body(mass = 2, inertia = cuboid(2, 0.3, 0.2, 0.1))]
     low: Body,
     #[joint(ground -> low)]
@@ -119,21 +119,22 @@ fn check_derivative_columns<M, S, const NQ: usize, const NV: usize, const NU: us
     for k in (0..2 * NV + NU).filter(|k| !skipped.contains(k)) {
         let unit_displacement =
             |s: f64, first: usize| SVector::<f64, NV>::from_fn(|i, _| if i + first == k { s } else { 0.0 });
-        let end_of_step = |s: f64| {
+        let step_end_at_perturbation = |s: f64| {
             let u = SVector::from_fn(|i, _| if i + 2 * NV == k { u[i] + s } else { u[i] });
             let q = m.integrate(q, &unit_displacement(s, 0));
             let (q, v) = discrete::step(m, method, 0.0, &q, &(v + unit_displacement(s, NV)), &u).unwrap();
             [m.difference(&found.q, &q), v]
         };
         // Noise of the search for impulses is divided by `h`.
-        let [one, two, three] = [1.0, 2.0, 3.0].map(|n| (end_of_step(n * h), end_of_step(-n * h)));
-        let column = |blocks: [&[f64]; 3]| {
+        let [one, two, three] =
+            [1.0, 2.0, 3.0].map(|n| (step_end_at_perturbation(n * h), step_end_at_perturbation(-n * h)));
+        let column_from_blocks = |blocks: [&[f64]; 3]| {
             let from = [0, NV, 2 * NV].into_iter().rev().find(|first| *first <= k).unwrap_or(0);
             SVector::<f64, NV>::from_column_slice(&blocks[from / NV][(k - from) * NV..(k - from + 1) * NV])
         };
         let columns = [
-            column([found.q_by_q.as_slice(), found.q_by_v.as_slice(), found.q_by_u.as_slice()]),
-            column([found.v_by_q.as_slice(), found.v_by_v.as_slice(), found.v_by_u.as_slice()]),
+            column_from_blocks([found.q_by_q.as_slice(), found.q_by_v.as_slice(), found.q_by_u.as_slice()]),
+            column_from_blocks([found.v_by_q.as_slice(), found.v_by_v.as_slice(), found.v_by_u.as_slice()]),
         ];
         for (what, column) in columns.into_iter().enumerate() {
             let difference_of_pair =
@@ -241,17 +242,18 @@ fn crate_step_jacobians_match_differences_in_every_mode() {
 #[test]
 fn contact_step_jacobian_covers_friction_moments_and_terrain() {
     for method in stepping_methods(0.01) {
-        let mut q = Bowl { restitution: 0.0 }.neutral();
+        let mut q = RollingBall { restitution: 0.0 }.neutral();
         q[2] = 0.05;
-        let check_bowl_columns = |restitution: f64, q: &SVector<f64, 7>, v: [f64; 6], skipped: &[usize]| {
-            let m = Bowl { restitution };
-            check_derivative_columns(&m, &method, (q, &v.into(), &SVector::zeros()), (1e-5, skipped));
-        };
-        check_bowl_columns(0.0, &q, [1.0, 0.0, 0.0, 0.0, 20.0, 0.3], &[2, 8]);
-        check_bowl_columns(0.0, &q, [1.0, 0.0, 0.0, 0.0, 2.0, 0.3], &[2, 8]);
+        let check_rolling_ball_columns =
+            |restitution: f64, q: &SVector<f64, 7>, v: [f64; 6], skipped: &[usize]| {
+                let m = RollingBall { restitution };
+                check_derivative_columns(&m, &method, (q, &v.into(), &SVector::zeros()), (1e-5, skipped));
+            };
+        check_rolling_ball_columns(0.0, &q, [1.0, 0.0, 0.0, 0.0, 20.0, 0.3], &[2, 8]);
+        check_rolling_ball_columns(0.0, &q, [1.0, 0.0, 0.0, 0.0, 2.0, 0.3], &[2, 8]);
         q[2] = 0.055;
-        check_bowl_columns(0.0, &q, [0.1, 0.3, -1.0, -20.0, 2.0, 0.3], &[]);
-        check_bowl_columns(0.4, &q, [1.0, 0.3, -2.0, -2.0, 2.0, 0.3], &[]);
+        check_rolling_ball_columns(0.0, &q, [0.1, 0.3, -1.0, -20.0, 2.0, 0.3], &[]);
+        check_rolling_ball_columns(0.4, &q, [1.0, 0.3, -2.0, -2.0, 2.0, 0.3], &[]);
         let m = BallInHollow {};
         (q[0], q[1], q[2]) = (0.3, 0.2, 0.2);
         q[2] -= m.contact_gaps(0.0, &q)[0] - 1e-3;
@@ -281,7 +283,7 @@ fn contact_step_jacobian_covers_a_landing_quadruped() {
 /// A ball rolls on a crate, which sticks to the ground or slides.
 #[test]
 fn contact_step_jacobian_covers_stacked_bodies() {
-    let m = Stack {};
+    let m = BallOnCrate {};
     let (mut q, v) = (m.neutral(), SVector::<f64, 12>::zeros());
     (q[2], q[7], q[9]) = (0.05, 0.03, 0.2);
     // Displacements and velocities that open or close a contact.

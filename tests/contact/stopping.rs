@@ -4,7 +4,7 @@
 //! impulse of friction follows from the velocity that it stops. With the deceleration `a`, the position is
 //! off by at most `a h² / 8`: a trapezoid takes the place of a parabola that ends within the step.
 
-use super::lasting::{Hoop, SlidingBox, Slope};
+use super::lasting::{BlockOnSlope, SlidingBox, WheelOnIncline};
 use super::laws::Random;
 use linkwork::prelude::*;
 
@@ -30,9 +30,9 @@ fn number_between(random: &mut Random, low: f64, high: f64) -> f64 {
     low + (high - low) * (random.next() + 1.0) / 2.0
 }
 
-/// Calls `check` ten times for each step size and kind of step, with a random generator, the step size and the
-/// method.
-fn check_random_motions(seed: u64, check: impl Fn(&mut Random, f64, TimeStepping<f64>)) {
+/// Calls `check` ten times for each step size and kind of step, with a random generator, the step size and
+/// the method.
+fn check_with_all_step_methods(seed: u64, check: impl Fn(&mut Random, f64, TimeStepping<f64>)) {
     let mut random = Random(seed);
     for h in [8e-3, 4e-3, 2e-3, 1e-3] {
         for _ in 0..10 {
@@ -45,7 +45,7 @@ fn check_random_motions(seed: u64, check: impl Fn(&mut Random, f64, TimeStepping
 }
 
 /// Returns a slope, a coefficient of friction above its tangent, a speed downhill, and the deceleration.
-fn random_slope(random: &mut Random) -> [f64; 4] {
+fn random_slope_and_stopping_motion(random: &mut Random) -> [f64; 4] {
     let slope = number_between(random, 0.0, 0.3);
     let friction = slope.tan() + number_between(random, 0.05, 0.8);
     let deceleration = GRAVITY * (friction * slope.cos() - slope.sin());
@@ -54,9 +54,9 @@ fn random_slope(random: &mut Random) -> [f64; 4] {
 
 #[test]
 fn particle_on_a_slope_stops_where_its_kinetic_energy_is_dissipated() {
-    check_random_motions(1, |random, h, method| {
-        let [slope, friction, speed, a] = random_slope(random);
-        let m = Slope { slope, friction };
+    check_with_all_step_methods(1, |random, h, method| {
+        let [slope, friction, speed, a] = random_slope_and_stopping_motion(random);
+        let m = BlockOnSlope { slope, friction };
         let run = simulate(&m).from([0.0; 3], [speed, 0.0, 0.0]).method(method);
         let end = run.duration(speed / a + 0.1).finish().unwrap();
         let error = (end.q[0] - speed * speed / (2.0 * a)).abs() + end.q[1].abs() + end.q[2].abs();
@@ -67,8 +67,8 @@ fn particle_on_a_slope_stops_where_its_kinetic_energy_is_dissipated() {
 
 #[test]
 fn box_on_a_slope_stops_where_its_kinetic_energy_is_dissipated() {
-    check_random_motions(2, |random, h, method| {
-        let [slope, friction, speed, a] = random_slope(random);
+    check_with_all_step_methods(2, |random, h, method| {
+        let [slope, friction, speed, a] = random_slope_and_stopping_motion(random);
         let yaw = 3.0 * random.next();
         let m = SlidingBox { slope, friction };
         let ((half_sine, half_cosine), (sine, cosine)) = ((yaw / 2.0).sin_cos(), yaw.sin_cos());
@@ -86,7 +86,7 @@ fn box_on_a_slope_stops_where_its_kinetic_energy_is_dissipated() {
 /// half the diagonal.
 #[test]
 fn box_that_spins_on_the_floor_stops_where_its_kinetic_energy_is_dissipated() {
-    check_random_motions(3, |random, h, method| {
+    check_with_all_step_methods(3, |random, h, method| {
         let (friction, spin) = (number_between(random, 0.05, 0.8), number_between(random, 1.0, 10.0));
         let squared_diagonal = 0.3 * 0.3 + 0.2 * 0.2_f64;
         let a = friction * GRAVITY * (squared_diagonal.sqrt() / 2.0) / (squared_diagonal / 12.0);
@@ -102,12 +102,12 @@ fn box_that_spins_on_the_floor_stops_where_its_kinetic_energy_is_dissipated() {
     });
 }
 
-/// A hoop slides until its contact point is at rest, and rolls from then on. The bound of the error counts the
-/// accelerations before and after the transition.
+/// A hoop slides until its contact point is at rest, and rolls from then on. The bound of the error counts
+/// the accelerations before and after the transition.
 #[test]
 fn hoop_on_a_slope_begins_to_roll() {
-    check_random_motions(4, |random, h, method| {
-        let [slope, friction, ..] = random_slope(random);
+    check_with_all_step_methods(4, |random, h, method| {
+        let [slope, friction, ..] = random_slope_and_stopping_motion(random);
         let (radius, inertia) = (0.1, 0.01);
         let (speed, spin) = (1.5 * random.next(), 15.0 * random.next());
         let slip = speed + radius * spin;
@@ -117,7 +117,7 @@ fn hoop_on_a_slope_begins_to_roll() {
         let instant = -slip / (sliding + radius * (force * radius / inertia));
         let velocity = speed + sliding * instant;
         let position = speed * instant + sliding * instant * instant / 2.0;
-        let m = Hoop { slope, friction, offset: 0.0 };
+        let m = WheelOnIncline { slope, friction, offset: 0.0 };
         let run = simulate(&m).from([0.0, radius, 0.0], [speed, 0.0, spin]).method(method);
         let end = run.duration(instant + 0.1).finish().unwrap();
         let error = (end.q[0] - position - velocity * 0.1 - rolling * 0.005).abs();
@@ -133,7 +133,7 @@ fn hoop_on_a_slope_begins_to_roll() {
 /// the axes of the ball, which rotates by up to 0.2 rad in a step: their errors are larger.
 #[test]
 fn bowling_ball_begins_to_roll() {
-    check_random_motions(5, |random, h, method| {
+    check_with_all_step_methods(5, |random, h, method| {
         let friction = number_between(random, 0.05, 0.8);
         let [vx, vy] = [0; 2].map(|_| 1.5 * random.next());
         let [wx, wy, wz] = [0; 3].map(|_| 15.0 * random.next());

@@ -1,8 +1,8 @@
 //! Jacobians of implicit midpoint steps, of steps under constraints and of multipliers, against differences.
 
 use super::{
-    Driven, Linkage, RotorCraftWithPendulum, assert_concatenated_columns, check_step_jacobians, check_steps,
-    derivatives_along_directions,
+    Linkage, PendulumOnDrivenPivot, RotorCraftWithPendulum, assert_concatenated_columns,
+    central_differences_along_directions, check_jacobians_at_random_states, check_step_jacobians,
 };
 use linkwork::nalgebra::SVector;
 use linkwork::prelude::*;
@@ -61,14 +61,20 @@ struct FourBar {
 #[test]
 fn implicit_step_jacobians_agree_with_differences() {
     for h in [0.01, 0.03] {
-        check_steps(
+        check_jacobians_at_random_states(
             &format!("carrier, {h}"),
             &RotorCraftWithPendulum {},
             &ImplicitMidpoint::step(h),
             2.0,
             5.0,
         );
-        check_steps(&format!("driven, {h}"), &Driven { rate: 30.0 }, &ImplicitMidpoint::step(h), 2.0, 1.0);
+        check_jacobians_at_random_states(
+            &format!("driven, {h}"),
+            &PendulumOnDrivenPivot { rate: 30.0 },
+            &ImplicitMidpoint::step(h),
+            2.0,
+            1.0,
+        );
     }
 }
 
@@ -120,7 +126,7 @@ fn check_multiplier_derivatives<
     M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = f64>,
 {
     let (by_q, by_v, by_tau) = m.multiplier_derivatives(t, q, v, tau);
-    let expected = derivatives_along_directions(|dq, dv, dtau: &SVector<f64, NV>| {
+    let expected = central_differences_along_directions(|dq, dv, dtau: &SVector<f64, NV>| {
         m.constrained_dynamics(t, &m.integrate(q, dq), &(v + dv), &(tau + dtau)).1
     });
     let expected: Vec<f64> = expected.iter().flatten().copied().collect();
@@ -136,10 +142,18 @@ fn constrained_step_jacobians_agree_with_differences() {
     let closed = linkage.assemble(&[0.9, -0.5, 1.4].into(), &[0]).expect("it can be assembled");
     check_constrained_step_jacobians("linkage", &linkage, &mut random, &closed);
     for k in 0..3 {
-        let mut near = |x: f64| x * (1.0 + random.uniform_number(0.15));
-        let bars = FourBar { base: near(1.8), crank_length: near(0.9), mass: near(2.0) };
-        let arms = ArmsLinkedByRod { span: near(1.9), mass: near(0.8), rate: near(5.0) };
-        let ball = Ballbot { radius: near(0.3), mass: near(1.0) };
+        let mut random_number_near = |x: f64| x * (1.0 + random.uniform_number(0.15));
+        let bars = FourBar {
+            base: random_number_near(1.8),
+            crank_length: random_number_near(0.9),
+            mass: random_number_near(2.0),
+        };
+        let arms = ArmsLinkedByRod {
+            span: random_number_near(1.9),
+            mass: random_number_near(0.8),
+            rate: random_number_near(5.0),
+        };
+        let ball = Ballbot { radius: random_number_near(0.3), mass: random_number_near(1.0) };
         check_constrained_step_jacobians(&format!("four bars, {k}"), &bars, &mut random, &closed);
         let bent = arms.integrate(&Mechanism::neutral(&arms), &[0.1, 0.1, 0.4, 0.1, -0.1].into());
         check_constrained_step_jacobians(&format!("arms, {k}"), &arms, &mut random, &bent);

@@ -59,7 +59,7 @@ struct RotorCraftWithPendulum {
 
 /// Pendulum with a motor, on a pivot that is driven up and down.
 #[mechanism(gravity = -9.81 * y, momentum_derivatives)]
-struct Driven {
+struct PendulumOnDrivenPivot {
     rate: f64,
     #[point(at = 0.1 * sin(rate * t) * y)]
     pivot: Point,
@@ -105,7 +105,7 @@ fn unit_direction_times<const N: usize>(k: usize, first: usize, size: f64) -> SV
 }
 
 /// Returns the derivatives of `f` along each direction of state and inputs, by central differences.
-fn derivatives_along_directions<const NV: usize, const NU: usize, const R: usize>(
+fn central_differences_along_directions<const NV: usize, const NU: usize, const R: usize>(
     f: impl Fn(&SVector<f64, NV>, &SVector<f64, NV>, &SVector<f64, NU>) -> SVector<f64, R>,
 ) -> Vec<SVector<f64, R>> {
     let value_along_direction = |k: usize, x: f64| {
@@ -126,7 +126,7 @@ fn assert_concatenated_columns(what: &str, found: &[&[f64]], expected: &[f64], s
 }
 
 /// Compares the Jacobians of steps at random states with differences of steps.
-fn check_steps<M, S, const NQ: usize, const NV: usize, const NU: usize>(
+fn check_jacobians_at_random_states<M, S, const NQ: usize, const NV: usize, const NU: usize>(
     name: &str,
     m: &M,
     method: &S,
@@ -167,13 +167,14 @@ fn check_step_jacobians<M, S, const NQ: usize, const NV: usize, const NU: usize>
     let displaced_step = |dq: &_, dv: &SVector<f64, NV>, du: &SVector<f64, NU>| {
         step_state(&m.integrate(q, dq), &(v + dv), &(u + du))
     };
-    let by_q: Vec<f64> =
-        derivatives_along_directions(|dq, dv, du| m.difference(&next_q, &displaced_step(dq, dv, du).0))
-            .iter()
-            .flatten()
-            .copied()
-            .collect();
-    let by_v: Vec<f64> = derivatives_along_directions(|dq, dv, du| displaced_step(dq, dv, du).1)
+    let by_q: Vec<f64> = central_differences_along_directions(|dq, dv, du| {
+        m.difference(&next_q, &displaced_step(dq, dv, du).0)
+    })
+    .iter()
+    .flatten()
+    .copied()
+    .collect();
+    let by_v: Vec<f64> = central_differences_along_directions(|dq, dv, du| displaced_step(dq, dv, du).1)
         .iter()
         .flatten()
         .copied()
@@ -208,17 +209,29 @@ fn check_step_jacobians<M, S, const NQ: usize, const NV: usize, const NU: usize>
 #[test]
 fn step_jacobians_agree_with_differences() {
     let carrier = RotorCraftWithPendulum {};
-    check_steps("carrier, Rk4", &carrier, &Rk4::step(0.02), 2.0, 5.0);
-    check_steps("carrier, a long step of Rk4", &carrier, &Rk4::step(0.15), 4.0, 5.0);
-    check_steps("carrier, Euler", &carrier, &SemiImplicitEuler::step(0.02), 2.0, 5.0);
-    check_steps("driven, Rk4", &Driven { rate: 30.0 }, &Rk4::step(0.02), 2.0, 1.0);
-    check_steps("driven, Euler", &Driven { rate: 30.0 }, &SemiImplicitEuler::step(0.02), 2.0, 1.0);
-    check_steps("arm, Rk4", &Panda, &Rk4::step(0.01), 1.0, 0.0);
-    check_steps("arm, Euler", &Panda, &SemiImplicitEuler::step(0.01), 1.0, 0.0);
+    check_jacobians_at_random_states("carrier, Rk4", &carrier, &Rk4::step(0.02), 2.0, 5.0);
+    check_jacobians_at_random_states("carrier, a long step of Rk4", &carrier, &Rk4::step(0.15), 4.0, 5.0);
+    check_jacobians_at_random_states("carrier, Euler", &carrier, &SemiImplicitEuler::step(0.02), 2.0, 5.0);
+    check_jacobians_at_random_states(
+        "driven, Rk4",
+        &PendulumOnDrivenPivot { rate: 30.0 },
+        &Rk4::step(0.02),
+        2.0,
+        1.0,
+    );
+    check_jacobians_at_random_states(
+        "driven, Euler",
+        &PendulumOnDrivenPivot { rate: 30.0 },
+        &SemiImplicitEuler::step(0.02),
+        2.0,
+        1.0,
+    );
+    check_jacobians_at_random_states("arm, Rk4", &Panda, &Rk4::step(0.01), 1.0, 0.0);
+    check_jacobians_at_random_states("arm, Euler", &Panda, &SemiImplicitEuler::step(0.01), 1.0, 0.0);
 }
 
 /// Compares the linear motion of the trait with differences of accelerations, also for loops.
-fn check_linear_motion<M, const NQ: usize, const NV: usize, const NU: usize>(
+fn check_acceleration_linearization<M, const NQ: usize, const NV: usize, const NU: usize>(
     name: &str,
     m: &M,
     q: &SVector<f64, NQ>,
@@ -232,7 +245,7 @@ fn check_linear_motion<M, const NQ: usize, const NV: usize, const NU: usize>(
     };
     let found = m.linear_motion(q, v, u);
     assert!((found.acceleration - acceleration_at_state(q, v, u)).amax() < 1e-12);
-    let expected = derivatives_along_directions(|dq, dv, du| {
+    let expected = central_differences_along_directions(|dq, dv, du| {
         acceleration_at_state(&Mechanism::integrate(m, q, dq), &(v + dv), &(u + du))
     });
     let expected: Vec<f64> = expected.iter().flatten().copied().collect();
@@ -253,20 +266,26 @@ fn linear_system_predicts_perturbed_motions() {
         SVector::from_fn(|_, _| random.uniform_number(1.0)),
         SVector::from_fn(|_, _| random.uniform_number(4.0)),
     );
-    check_linear_motion("carrier", &carrier, &q, &v, &u);
+    check_acceleration_linearization("carrier", &carrier, &q, &v, &u);
     // The matrix of the linear motion equals that of the mechanism's `linearize`.
     let (a, b) = carrier.linearize(&q, &v, &u);
     let found = carrier.linear_motion(&q, &v, &u);
     assert!((found.a::<{ 2 * RotorCraftWithPendulum::NV }>() - a).amax() < 1e-11 * a.amax());
     assert!((found.b::<{ 2 * RotorCraftWithPendulum::NV }>() - b).amax() < 1e-12 * b.amax());
 
-    let driven = Driven { rate: 20.0 };
-    check_linear_motion("driven", &at(&driven, 0.3), &[0.4].into(), &[1.0].into(), &[0.2].into());
+    let driven = PendulumOnDrivenPivot { rate: 20.0 };
+    check_acceleration_linearization(
+        "driven",
+        &at(&driven, 0.3),
+        &[0.4].into(),
+        &[1.0].into(),
+        &[0.2].into(),
+    );
 
     let linkage = Linkage {};
     let q = linkage.assemble(&[0.9, -0.5, 1.4].into(), &[0]).expect("it can be assembled");
     let v = linkage.complete_velocity(&q, &[1.0, 0.0, 0.0].into(), &[0]).expect("it moves");
-    check_linear_motion("linkage", &linkage, &q, &v, &[3.0].into());
+    check_acceleration_linearization("linkage", &linkage, &q, &v, &[3.0].into());
 }
 
 /// A single step equals a simulation of that duration, for every method and with constraints.
@@ -288,7 +307,7 @@ fn single_steps_equal_simulations() {
         let end = run.finish().expect("it moves");
         assert!((found_q - end.q).amax() < 1e-14 && (found_v - end.v).amax() < 1e-13, "{found_v} {}", end.v);
     }
-    let (linkage, driven, h) = (Linkage {}, Driven { rate: 30.0 }, 0.01);
+    let (linkage, driven, h) = (Linkage {}, PendulumOnDrivenPivot { rate: 30.0 }, 0.01);
     let q = linkage.assemble(&[0.9, -0.5, 1.4].into(), &[0]).expect("it can be assembled");
     let v = linkage.complete_velocity(&q, &[1.0, 0.0, 0.0].into(), &[0]).expect("it moves");
     check_discrete_derivatives_of_method(&linkage, Rk4::step(h), h, &q, &v);
@@ -301,7 +320,7 @@ fn single_steps_equal_simulations() {
 
 #[test]
 fn invalid_sample_periods_are_errors() {
-    let driven = Driven { rate: 1.0 };
+    let driven = PendulumOnDrivenPivot { rate: 1.0 };
     let (q, v, u) = ([0.4].into(), [1.0].into(), [0.0].into());
     for h in [0.0, -0.1, f64::NAN, f64::INFINITY] {
         let found = discrete::step(&driven, &Rk4::step(h), 0.0, &q, &v, &u);
@@ -337,8 +356,8 @@ fn frame_placements_by_index_equal_those_by_name() {
     assert_eq!(carrier.jacobian_of(load, 0.0, &q), Some(carrier.frame_jacobian(named, &q)));
     assert_eq!(carrier.placement_of(RotorCraftWithPendulum::FRAMES.len(), 0.0, &q), None);
     // Frames of a driven mechanism depend on time.
-    let driven = Driven { rate: 2.0 };
-    let pivot = index_of(&Driven::FRAMES, "pivot").expect("it is one");
+    let driven = PendulumOnDrivenPivot { rate: 2.0 };
+    let pivot = index_of(&PendulumOnDrivenPivot::FRAMES, "pivot").expect("it is one");
     let height = driven.placement_of(pivot, 0.4, &[0.1].into()).map(|p| p.translation.y);
     assert!(height.is_some_and(|y| (y - 0.1 * 0.8_f64.sin()).abs() < 1e-15));
 }

@@ -1,7 +1,7 @@
 //! Jacobians of steps of mechanisms with declared generalized speeds, also under constraints, against
 //! differences of steps.
 
-use super::check_steps;
+use super::check_jacobians_at_random_states;
 use super::implicit::check_constrained_step_jacobians;
 use linkwork::nalgebra::SVector;
 use linkwork::prelude::*;
@@ -61,7 +61,7 @@ ballbot! {
 
 /// Two arms whose ends are connected by a rod of time-dependent length: a spatial loop.
 #[mechanism(gravity = -9.81 * z, momentum_derivatives)]
-struct Arms {
+struct ArmsLinkedByRod {
     span: f64,
     rate: f64,
     #[body(mass = 0.8, com = 0.3 * x, inertia = diagonal(0.01, 0.05, 0.06))]
@@ -116,9 +116,9 @@ struct FourBar {
 
 #[test]
 fn step_jacobians_in_speeds_agree_with_differences() {
-    check_steps("gimbal, Rk4", &Gimbal {}, &Rk4::step(0.02), 1.0, 1.0);
-    check_steps("gimbal, Euler", &Gimbal {}, &SemiImplicitEuler::step(0.02), 1.0, 1.0);
-    check_steps("gimbal, midpoint", &Gimbal {}, &ImplicitMidpoint::step(0.02), 1.0, 1.0);
+    check_jacobians_at_random_states("gimbal, Rk4", &Gimbal {}, &Rk4::step(0.02), 1.0, 1.0);
+    check_jacobians_at_random_states("gimbal, Euler", &Gimbal {}, &SemiImplicitEuler::step(0.02), 1.0, 1.0);
+    check_jacobians_at_random_states("gimbal, midpoint", &Gimbal {}, &ImplicitMidpoint::step(0.02), 1.0, 1.0);
 }
 
 #[test]
@@ -127,7 +127,7 @@ fn constrained_step_jacobians_in_speeds_agree_with_differences() {
     for k in 0..2 {
         let mut near = |x: f64| x * (1.0 + random.uniform_number(0.15));
         let bars = FourBar { base: near(1.8), mass: near(2.0) };
-        let arms = Arms { span: near(1.9), rate: near(5.0) };
+        let arms = ArmsLinkedByRod { span: near(1.9), rate: near(5.0) };
         let ball = Ballbot { radius: near(0.3), mass: near(1.0) };
         let closed = bars.assemble(&[0.9, -0.5, 1.4].into(), &[0]).expect("it can be assembled");
         check_constrained_step_jacobians(&format!("four bars, {k}"), &bars, &mut random, &closed);

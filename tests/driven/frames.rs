@@ -7,7 +7,7 @@ use support::compare::assert_close;
 /// Arm that rotates with constant angular velocity, a lamp that moves with it, and a second arm that rotates
 /// relative to the first one. No body has a coordinate.
 #[mechanism(gravity = -9.81 * y)]
-struct Robot {
+struct RotatingArmsWithLamp {
     first_speed: f64,
     second_speed: f64,
     #[frame(ground, z(first_speed * t))]
@@ -37,8 +37,8 @@ struct Robot {
 #[test]
 fn arms_on_frames_output_their_drive_torques() {
     let (w1, w2) = (3.0, -2.0);
-    let m = Robot { first_speed: w1, second_speed: w2 };
-    assert_eq!((Robot::NQ, Robot::NV), (0, 0));
+    let m = RotatingArmsWithLamp { first_speed: w1, second_speed: w2 };
+    assert_eq!((RotatingArmsWithLamp::NQ, RotatingArmsWithLamp::NV), (0, 0));
     let (q, v) = (SVector::<f64, 0>::zeros(), SVector::<f64, 0>::zeros());
     let w = w1 + w2;
     let direction_at_angle = |angle: f64| [angle.cos(), angle.sin()];

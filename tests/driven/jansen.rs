@@ -70,10 +70,10 @@ fn ground_coordinates_of_body_point(a: Point, b: Point, x: f64, y: f64) -> Point
 }
 
 /// Bars with their masses, centres of mass, moments of inertia and ends.
-struct Skeleton(Vec<(f64, Point, f64, [Point; 2])>);
+struct LegBars(Vec<(f64, Point, f64, [Point; 2])>);
 
 /// Returns the corners of the leg by intersections of circles.
-fn skeleton_at_angle(angle: f64) -> Skeleton {
+fn bars_at_crank_angle(angle: f64) -> LegBars {
     let (pivot, centre) = ([-0.38, -0.078], [0.0, 0.0]);
     let pin = [0.15 * angle.cos(), 0.15 * angle.sin()];
     let top = triangle_corner_from_sides(pivot, pin, 0.415, 0.5, 1.0);
@@ -81,7 +81,7 @@ fn skeleton_at_angle(angle: f64) -> Skeleton {
     let bottom = triangle_corner_from_sides(pivot, pin, 0.393, 0.619, -1.0);
     let rear = triangle_corner_from_sides(left, bottom, 0.394, 0.367, -1.0);
     let rod_inertia = |m: f64, l: f64| m * l * l / 12.0;
-    Skeleton(vec![
+    LegBars(vec![
         (0.1, [0.075, 0.0], rod_inertia(0.1, 0.15), [centre, pin]),
         (0.9, [0.2, 0.13], 0.03, [pivot, top]),
         (0.4, [0.1965, 0.0], rod_inertia(0.4, 0.393), [pivot, bottom]),
@@ -92,7 +92,7 @@ fn skeleton_at_angle(angle: f64) -> Skeleton {
     ])
 }
 
-impl Skeleton {
+impl LegBars {
     fn angle_of_bar(&self, k: usize) -> f64 {
         let [a, b] = self.0[k].3;
         (b[1] - a[1]).atan2(b[0] - a[0])
@@ -107,14 +107,14 @@ impl Skeleton {
 /// Returns the energy, with velocities from differences of the corners.
 fn energy_at_time(speed: f64, t: f64) -> f64 {
     let time_derivative = |f: &dyn Fn(f64) -> f64| super::time_derivative(|t| f(speed * t), t);
-    let here = skeleton_at_angle(speed * t);
+    let here = bars_at_crank_angle(speed * t);
     let mut sum = 0.0;
     for (k, (mass, _, inertia, _)) in here.0.iter().enumerate() {
-        let v = [0, 1].map(|i| time_derivative(&|angle| skeleton_at_angle(angle).center_of_bar(k)[i]));
+        let v = [0, 1].map(|i| time_derivative(&|angle| bars_at_crank_angle(angle).center_of_bar(k)[i]));
         // The difference starts at the current angle, so that no jump by a whole turn occurs.
         let base = here.angle_of_bar(k);
         let w = time_derivative(&|angle| {
-            let turned = skeleton_at_angle(angle).angle_of_bar(k) - base;
+            let turned = bars_at_crank_angle(angle).angle_of_bar(k) - base;
             turned.sin().atan2(turned.cos())
         });
         sum += mass * ((v[0] * v[0] + v[1] * v[1]) / 2.0 + 9.81 * here.center_of_bar(k)[1])
@@ -133,7 +133,7 @@ fn crank_power_equals_the_rate_of_energy() {
     let mut last: Option<SVector<f64, 6>> = None;
     for k in 0..=24 {
         let t = f64::from(k) * std::f64::consts::TAU / speed / 24.0;
-        let s = skeleton_at_angle(speed * t);
+        let s = bars_at_crank_angle(speed * t);
         let relative_angle = |k: usize, of: f64| {
             let angle = s.angle_of_bar(k) - of;
             angle.sin().atan2(angle.cos())

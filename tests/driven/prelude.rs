@@ -16,7 +16,7 @@ struct Bead {
 }
 
 #[mechanism]
-struct Ring {
+struct BeadOnRing {
     #[particle(mass = 1)]
     bead: Particle,
     #[joint(ground -> bead, along = (x, y))]
@@ -51,7 +51,7 @@ fn wrapped_driven_mechanisms_need_no_other_trait() {
     assert_eq!(apart(&bead).forward_dynamics(0.0, &q, &v, &tau), SVector::from([2.0, 3.0]));
     assert_eq!(apart(&bead).mass_matrix(0.0, &q)[(1, 1)], 2.0);
 
-    let ring = Ring {};
+    let ring = BeadOnRing {};
     let steady = stabilized(&ring, 3.0);
     let a = steady.forward_dynamics(0.0, &[1.1, 0.0].into(), &[0.0, 0.0].into(), &SVector::zeros());
     // 2.2 a = −9 (1.21 − 1).

@@ -127,15 +127,15 @@ placed_by_time!(
 /// Solution by hand at a constant speed of the crank. `rod` holds the rod's angle, angular velocity and
 /// angular acceleration; `piston` holds the piston's position, velocity and acceleration. The other fields
 /// are the torque on the crank and the force of the crank's bearing on it.
-struct ByHand {
+struct SolutionByHand {
     rod: [f64; 3],
     piston: [f64; 3],
     torque: f64,
     bearing: [f64; 2],
 }
 
-impl ByHand {
-    fn new(theta: f64, omega: f64) -> ByHand {
+impl SolutionByHand {
+    fn new(theta: f64, omega: f64) -> SolutionByHand {
         let (s, c) = theta.sin_cos();
         // The closure condition is r sin θ + l sin β = 0.
         let beta = (-R * s / L).asin();
@@ -172,7 +172,7 @@ impl ByHand {
             CRANK * crank[0] + ROD * a[0] + PISTON * piston[2],
             CRANK * (crank[1] + G) + ROD * (a[1] + G) - wall,
         ];
-        ByHand { rod: [beta - theta, rate - omega, bend], piston, torque, bearing }
+        SolutionByHand { rod: [beta - theta, rate - omega, bend], piston, torque, bearing }
     }
 }
 
@@ -186,7 +186,7 @@ fn instants_of_revolution() -> impl Iterator<Item = f64> {
 macro_rules! check {
     ($m:expr, $t:expr) => {{
         let (m, t) = (&$m, $t);
-        let hand = ByHand::new(OMEGA * t, OMEGA);
+        let hand = SolutionByHand::new(OMEGA * t, OMEGA);
         let guess = [OMEGA * t, hand.rod[0] + 0.2, hand.piston[0] - 0.02].into();
         let q = m.assemble(t, &guess, &[0]).unwrap();
         let v = m.complete_velocity(t, &q, &[OMEGA, 0.0, 0.0].into(), &[]).unwrap();
@@ -228,7 +228,7 @@ fn rates_prescribed_by_parameters_need_no_time() {
     assert_eq!((Rated::NP, Rated::NS, Rated::NC), (1, 0, 3));
     let m = Rated { omega: OMEGA };
     for t in instants_of_revolution() {
-        let hand = ByHand::new(OMEGA * t, OMEGA);
+        let hand = SolutionByHand::new(OMEGA * t, OMEGA);
         let q = m.assemble(&[OMEGA * t, hand.rod[0], hand.piston[0]].into(), &[0]).unwrap();
         let v = m.complete_velocity(&q, &SVector::zeros(), &[]).unwrap();
         assert_close("v", &v.data.0[0], &[OMEGA, hand.rod[1], hand.piston[1]], 1e-11);
@@ -244,7 +244,7 @@ fn rates_prescribed_by_parameters_need_no_time() {
 fn inverse_dynamics_returns_the_crank_torque() {
     let m = Motorised {};
     for t in instants_of_revolution() {
-        let hand = ByHand::new(OMEGA * t, OMEGA);
+        let hand = SolutionByHand::new(OMEGA * t, OMEGA);
         let q = m.assemble(&[OMEGA * t, hand.rod[0], hand.piston[0]].into(), &[0]).unwrap();
         let v = m.complete_velocity(&q, &[OMEGA, 0.0, 0.0].into(), &[0]).unwrap();
         let a = m.complete_acceleration(&q, &v, &SVector::zeros(), &[0]).unwrap();
@@ -285,7 +285,7 @@ fn prescribed_frames_drive_loops() {
     assert_eq!(ClosedForm::NV, 0);
     let (none, rest) = (SVector::<f64, 0>::zeros(), SVector::<f64, 0>::zeros());
     for t in instants_of_revolution() {
-        let hand = ByHand::new(OMEGA * t, OMEGA);
+        let hand = SolutionByHand::new(OMEGA * t, OMEGA);
         let q = m.assemble(t, &[hand.rod[0] - 0.2, hand.piston[0]].into(), &[]).unwrap();
         let v = m.project_velocity(t, &q, &SVector::zeros()).unwrap();
         assert_close("q", &q.data.0[0], &[hand.rod[0], hand.piston[0]], 1e-10);
@@ -308,8 +308,8 @@ fn prescribed_frames_drive_loops() {
 #[test]
 fn simulations_follow_the_prescribed_motion() {
     let end = 2.2 * std::f64::consts::TAU / OMEGA;
-    let hand = ByHand::new(OMEGA * end, OMEGA);
-    let (start, m) = (ByHand::new(0.0, OMEGA), Positioned { omega: OMEGA });
+    let hand = SolutionByHand::new(OMEGA * end, OMEGA);
+    let (start, m) = (SolutionByHand::new(0.0, OMEGA), Positioned { omega: OMEGA });
     let (q, v) = ([0.0, start.rod[0], start.piston[0]], [OMEGA, start.rod[1], start.piston[1]]);
     let found = simulate(&m).from(q, v).duration(end).finish().unwrap();
     let turned = OMEGA * end;
@@ -328,7 +328,7 @@ fn simulations_follow_the_prescribed_motion() {
 #[test]
 fn driven_mechanisms_have_linear_systems_without_states() {
     let m = Positioned { omega: OMEGA };
-    let hand = ByHand::new(0.6, OMEGA);
+    let hand = SolutionByHand::new(0.6, OMEGA);
     let t = 0.6 / OMEGA;
     let q = m.assemble(t, &[0.6, hand.rod[0], hand.piston[0]].into(), &[0]).unwrap();
     let v = m.project_velocity(t, &q, &SVector::zeros()).unwrap();
@@ -352,7 +352,7 @@ fn contradictory_drives_are_reported() {
 #[test]
 fn optional_functions_work_without_degrees_of_freedom() {
     let m = Whole { omega: OMEGA, stiffness: 250.0 };
-    let (t, hand) = (0.9 / OMEGA, ByHand::new(0.9, OMEGA));
+    let (t, hand) = (0.9 / OMEGA, SolutionByHand::new(0.9, OMEGA));
     let q = m.assemble(t, &[0.9, hand.rod[0], hand.piston[0]].into(), &[]).unwrap();
     let v = m.project_velocity(t, &q, &SVector::zeros()).unwrap();
     let u = [70.0].into();

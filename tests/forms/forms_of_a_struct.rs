@@ -7,7 +7,7 @@ use linkwork::prelude::*;
 
 /// Mechanism without parameters, whose struct has no fields left.
 #[mechanism]
-pub struct Plain {
+pub struct MechanismWithoutParameters {
     #[body(mass = 1)]
     cart: Body,
     #[joint(ground -> cart, along = x)]
@@ -64,7 +64,7 @@ where
 fn all_struct_forms_compile() {
     let adorned = CartWithAllAttributes { mass: 2.0, _serial: 7.0 };
     assert_eq!(adorned.total_mass() + adorned._serial, 9.0);
-    assert_eq!(Plain.total_mass(), 1.0);
+    assert_eq!(MechanismWithoutParameters.total_mass(), 1.0);
     assert_eq!(SinglePrecisionCart {}.total_mass(), 0.1_f32);
     let generic = Generic { g: 9.81_f32 };
     assert_eq!(generic.total_mass(), 2.0_f32);

@@ -25,7 +25,7 @@ mod both {
         v.sum()
     }
 
-    pub fn run() -> std::result::Result<f64, Box<dyn Error>> {
+    pub fn use_prelude_beside_nalgebra() -> std::result::Result<f64, Box<dyn Error>> {
         let end = simulate(&Cart).from([0.0], [1.0]).duration(2.0).finish()?;
         let place: Point<f64, 3> = Cart.place(&end.q).into();
         let _: Result = Ok(());
@@ -74,7 +74,7 @@ mod own {
     /// the prelude.
     fn require_local_traits(_: impl Mechanism + Real) {}
 
-    pub fn run() -> usize {
+    pub fn use_prelude_beside_own_items() -> usize {
         at();
         require_local_traits(());
         simulate();
@@ -106,7 +106,7 @@ mod far {
     cart!(Light, 1);
     cart!(Heavy, 2);
 
-    pub fn run() -> f64 {
+    pub fn use_prelude_of_renamed_crate() -> f64 {
         #[mechanism(prepare, crate = crate::own_names::other::mechanisms)]
         struct Local<T> {
             m: T,
@@ -124,7 +124,7 @@ mod far {
 
 #[test]
 fn user_items_are_not_shadowed_by_generated_names() {
-    assert!((both::run().unwrap() - 5.0 - 5_f64.sqrt()).abs() < 1e-9);
-    assert_eq!(own::run(), 1);
-    assert_eq!(far::run(), 6.0);
+    assert!((both::use_prelude_beside_nalgebra().unwrap() - 5.0 - 5_f64.sqrt()).abs() < 1e-9);
+    assert_eq!(own::use_prelude_beside_own_items(), 1);
+    assert_eq!(far::use_prelude_of_renamed_crate(), 6.0);
 }

@@ -36,7 +36,7 @@ struct BodyWithPlacedParticle {
 
 /// Inerter between two bodies, large enough that generated functions call each other.
 #[mechanism(gravity = -9.81 * z, derivatives, prepare)]
-struct Pair {
+struct InerterBetweenBodies {
     inertance: f64,
     #[body(mass = 1, inertia = diagonal(0.1, 0.2, 0.3))]
     tug: Body,
@@ -108,4 +108,8 @@ free_body!(
     BodyWithPlacedParticle { mass: 0.7 },
     BodyWithPlacedParticle
 );
-free_body!(an_inerter_between_bodies_couples_them, Pair { inertance: 0.6 }, Pair);
+free_body!(
+    an_inerter_between_bodies_couples_them,
+    InerterBetweenBodies { inertance: 0.6 },
+    InerterBetweenBodies
+);

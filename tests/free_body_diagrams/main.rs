@@ -219,7 +219,7 @@ fn free_body_actions_equal_their_force_laws() {
 slider_crank! {
     /// Slider-crank, and a rolling disk that carries a pendulum.
     #[mechanism(gravity = -9.81 * y)]
-    struct Machine {
+    struct SliderCrankAndRollingDisk {
         slope: f64,
         #[acts(on = main)]
         motor: Torque,
@@ -259,7 +259,7 @@ slider_crank! {
 
 #[test]
 fn constraint_and_loop_forces_act_on_their_bodies() {
-    let m = Machine { slope: 0.3 };
+    let m = SliderCrankAndRollingDisk { slope: 0.3 };
     let (s, c) = 0.3_f64.sin_cos();
     for crank in [0.3_f64, 1.2, -1.0] {
         let guess = SVector::from([crank, -2.0 * crank.sin(), 0.6, 0.15 * s, 0.15 * c, 0.4, 0.7]);
@@ -281,8 +281,9 @@ fn constraint_and_loop_forces_act_on_their_bodies() {
         assert!(plane.force.dot(&below) < 0.0);
         // The closing joint acts on both of its bodies.
         let (rod, piston) = (m.on_rod(&q, &v, &u), m.on_piston(&q, &v, &u));
-        let actions_at_end = |name| (rod.get(name).expect("it closes"), piston.get(name).expect("it closes"));
-        let (on_rod, on_piston) = actions_at_end("small_end");
+        let actions_on_rod_and_piston =
+            |name| (rod.get(name).expect("it closes"), piston.get(name).expect("it closes"));
+        let (on_rod, on_piston) = actions_on_rod_and_piston("small_end");
         assert!((on_rod.force + on_piston.force).norm() < 1e-9 && on_rod.origin == Origin::Joint);
         assert!(on_rod.torque.norm() < 1e-9 && on_piston.torque.norm() < 1e-9);
     }
@@ -290,7 +291,7 @@ fn constraint_and_loop_forces_act_on_their_bodies() {
 
 /// Disk that slips down an incline with dry friction, under a force that depends on time.
 #[mechanism(gravity = -9.81 * y)]
-struct Driven {
+struct DrivenSlippingDisk {
     #[body(mass = 0.8, inertia = disk(0.8, 0.15, z))]
     disk: Body,
     #[joint(ground -> disk, about = z)]
@@ -313,7 +314,7 @@ struct Driven {
 
 #[test]
 fn friction_acts_at_the_point_of_the_normal_force() {
-    let m = Driven {};
+    let m = DrivenSlippingDisk {};
     let size = 1.04_f64.sqrt();
     let q = SVector::from([0.15 * 0.2 / size, 0.15 / size, 0.3]);
     let v = SVector::from([0.5 / size, -0.1 / size, 2.0]);

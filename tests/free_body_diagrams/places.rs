@@ -9,7 +9,7 @@ use support::random::Random;
 /// Arm with a bead that a coordinate moves along it, and a pendulum on the bead. A plate moves on a path that
 /// depends on time and a coordinate, with a weight on it.
 #[mechanism(gravity = -9.81 * z)]
-struct Places {
+struct BodiesPlacedByCoordinates {
     slide: Coordinate,
     turn: Coordinate,
     #[body(mass = 2, com = 0.3 * x, inertia = diagonal(0.05, 0.2, 0.2))]
@@ -64,7 +64,7 @@ struct Places {
 
 #[test]
 fn free_body_diagrams_include_reactions_of_placed_elements() {
-    let m = Places {};
+    let m = BodiesPlacedByCoordinates {};
     let mut random = Random::new(12);
     for t in [0.0, 0.4, 1.3] {
         let q = m.integrate(&m.neutral(), &random.random_vector(0.7));

@@ -31,7 +31,7 @@ const IDENTITY: f64 = 1e-11;
 
 /// Checks consequences of the trait alone. `dissipation` is the power that dashpots dissipate at velocity
 /// `v`.
-fn check_trait_consequences<M, const NQ: usize, const NV: usize, const NU: usize>(
+fn check_mechanism_trait_identities<M, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     dissipation: impl Fn(&SVector<f64, NV>) -> f64,
 ) where
@@ -124,7 +124,7 @@ fn check_bias_quadratic_in_velocity<M, const NQ: usize, const NV: usize, const N
 where
     M: Mechanism<NQ, NV, NU, Scalar = f64>,
 {
-    check_trait_consequences(m, |_| 0.0);
+    check_mechanism_trait_identities(m, |_| 0.0);
     let mut random = Random::new(4);
     let q = random.random_configuration(m);
     let v = random.random_vector(1.0);
@@ -174,8 +174,8 @@ undamped! {
 /// Dashpots dissipate the power `c v²`.
 #[test]
 fn dashpots_dissipate_quadratic_power() {
-    let m = sample_workshop();
-    check_trait_consequences(&m, |v| {
+    let m = sample_coordinate_force_mechanism();
+    check_mechanism_trait_identities(&m, |v| {
         m.shoulder_damping * v[0] * v[0] + m.slide_damping * v[1] * v[1] + m.turn_damping * v[2] * v[2]
     });
 }
@@ -236,7 +236,7 @@ fn frame_velocities_are_rates_of_placements() {
     check_kinematics!(OnPlanar {}, OnPlanar, "carried");
     check_kinematics!(OnFree {}, OnFree, "carried");
     check_kinematics!(OnWeld {}, OnWeld, "carried");
-    check_kinematics!(sample_workshop(), Workshop, "tip");
+    check_kinematics!(sample_coordinate_force_mechanism(), CoordinateForceMechanism, "tip");
 }
 
 /// Motors do not change the momentum of a robot in the air: it changes only by the robot's weight.
@@ -259,15 +259,18 @@ fn motors_preserve_the_momentum_of_flying_robots() {
 /// Checks that the power of each input is its force times the velocity of the point on which it acts.
 #[test]
 fn input_power_is_force_times_point_velocity() {
-    let m = sample_workshop();
-    assert_eq!(Workshop::INPUTS, ["motor", "drive", "spin", "thrust", "lift", "wheel", "gust"]);
-    assert_eq!(Workshop::VELOCITIES, ["shoulder", "track.slide", "track.turn"]);
+    let m = sample_coordinate_force_mechanism();
+    assert_eq!(
+        CoordinateForceMechanism::INPUTS,
+        ["motor", "drive", "spin", "thrust", "lift", "wheel", "gust"]
+    );
+    assert_eq!(CoordinateForceMechanism::VELOCITIES, ["shoulder", "track.slide", "track.turn"]);
     let mut random = Random::new(7);
     for _ in 0..10 {
         let q = random.random_configuration(&m);
         let (v, u): (_, SVector<f64, 7>) = (random.random_vector(1.0), random.random_vector(1.0));
-        let tip = m.frame_velocity(frame!(Workshop, "tip"), &q, &v);
-        let carriage = m.frame_placement(frame!(Workshop, "carriage"), &q).rotation;
+        let tip = m.frame_velocity(frame!(CoordinateForceMechanism, "tip"), &q, &v);
+        let carriage = m.frame_placement(frame!(CoordinateForceMechanism, "carriage"), &q).rotation;
         let (velocity, turning) =
             (Vector3::new(tip[0], tip[1], tip[2]), Vector3::new(tip[3], tip[4], tip[5]));
         let (x, y, z) = (Vector3::x(), Vector3::y(), Vector3::z());
@@ -284,7 +287,7 @@ fn input_power_is_force_times_point_velocity() {
             let mut one = SVector::zeros();
             one[i] = u[i];
             let done = v.dot(&m.generalized_forces(&q, &one));
-            assert_close(Workshop::INPUTS[i], &[done], &[power * u[i]], IDENTITY);
+            assert_close(CoordinateForceMechanism::INPUTS[i], &[done], &[power * u[i]], IDENTITY);
         }
         let all: f64 = powers.iter().zip(&u).map(|(p, u)| p * u).sum();
         assert_close("all inputs", &[v.dot(&m.generalized_forces(&q, &u))], &[all], IDENTITY);
@@ -319,7 +322,7 @@ fn spacecraft_conserves_momentum_and_energy() {
 /// dashpots dissipate.
 #[test]
 fn workshop_energy_changes_by_work_minus_dissipation() {
-    let m = sample_workshop();
+    let m = sample_coordinate_force_mechanism();
     let input_at_time = |t: f64| SVector::<f64, 7>::from_fn(|i, _| (t * (1.0 + i as f64) + i as f64).sin());
     let input_power_minus_dissipation = |t: f64, q: &_, v: &SVector<f64, 3>| {
         v.dot(&m.generalized_forces(q, &input_at_time(t)))
@@ -353,7 +356,7 @@ fn workshop_energy_changes_by_work_minus_dissipation() {
 
 /// Robot that is generic over the scalar type.
 #[mechanism(gravity = -g * y)]
-struct Robot<T> {
+struct GenericScalarRobot<T> {
     g: T,
     m: T,
     l: T,
@@ -375,15 +378,15 @@ struct Robot<T> {
     push: Force,
 }
 
-fn sample_robot<T: Real>() -> Robot<T> {
+fn sample_robot<T: Real>() -> GenericScalarRobot<T> {
     let [g, m, l, k, c] = [9.81, 1.3, 0.7, 5.0, 0.2].map(linkwork::nalgebra::convert);
-    Robot { g, m, l, k, c }
+    GenericScalarRobot { g, m, l, k, c }
 }
 
 #[test]
 fn dynamics_agree_for_all_scalar_types() {
     let (single, double) = (sample_robot::<f32>(), sample_robot::<f64>());
-    check_trait_consequences(&double, |v| 0.2 * v[0] * v[0]);
+    check_mechanism_trait_identities(&double, |v| 0.2 * v[0] * v[0]);
     let mut random = Random::new(10);
     for _ in 0..10 {
         let q = random.random_configuration(&double);
@@ -423,7 +426,7 @@ fn dynamics_agree_for_all_scalar_types() {
 /// Light planar arm with a heavy load. Two of the three pivots of its mass matrix are small relative to the
 /// first one.
 #[mechanism]
-struct Loaded {
+struct ArmWithHeavyLoad {
     load: f64,
     #[body(mass = 1, com = 0.5 * x, inertia = rod(1, 1, x))]
     upper: Body,
@@ -446,7 +449,7 @@ struct Loaded {
 fn heavy_loads_on_light_arms_lose_no_accuracy() {
     let (v, tau) = (Vector3::zeros(), Vector3::new(0.3, -0.2, 0.7));
     for load in [1.0, 1e2, 1e4, 1e6, 1e8] {
-        let m = Loaded { load };
+        let m = ArmWithHeavyLoad { load };
         for bend in [0.0, 1e-4, 1e-2, 1.0] {
             let q = Vector3::new(0.4, bend, -bend / 2.0);
             let a = m.forward_dynamics(&q, &v, &tau);

@@ -1,11 +1,11 @@
 //! Arm with a row of springs, compiled in process: derivation and generated code for few springs and for
 //! many.
 
-use linkwork_compiler::derive::Output;
+use linkwork_compiler::derive::DerivationOutput;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::mechanism::Quantity;
-use linkwork_compiler::{compile, expand, read_source};
+use linkwork_compiler::{compile, expand, parse_source_and_import};
 use proc_macro2::TokenStream;
 use std::ops::Range;
 use std::path::Path;
@@ -14,7 +14,7 @@ use support::random::Random;
 
 /// Returns the source of an arm of three spatial pins with a range of springs from a row, some of them with
 /// dashpots in parallel.
-fn arm_with_springs(springs: Range<usize>) -> [TokenStream; 2] {
+fn arm_source_with_springs(springs: Range<usize>) -> [TokenStream; 2] {
     let mut item = "struct Arm {".to_string();
     let mut parent = "ground".to_string();
     for (k, axis) in ["z", "y", "x"].into_iter().enumerate() {
@@ -44,24 +44,24 @@ fn arm_with_springs(springs: Range<usize>) -> [TokenStream; 2] {
     ["gravity = -9.81 * z, derivatives", &item].map(|text| text.parse().expect("the source is Rust"))
 }
 
-fn compile_mechanism([arguments, item]: [TokenStream; 2]) -> Output {
+fn compile_mechanism([arguments, item]: [TokenStream; 2]) -> DerivationOutput {
     let (mut cx, graph) = (Diagnostics::new(), Graph::new());
-    let source = read_source(arguments, item, Path::new(""), &mut cx);
+    let source = parse_source_and_import(arguments, item, Path::new(""), &mut cx);
     let Some((_, output)) = source.and_then(|source| compile(&source, &graph, &mut cx)) else {
-        panic!("{}", cx.messages().join("\n"));
+        panic!("{}", cx.full_message_texts().join("\n"));
     };
     output
 }
 
 /// Evaluates a generated function and the functions that it calls, at a state and an acceleration.
-fn run_function(output: &Output, name: &str, state: &[[f64; 3]; 3]) -> Option<Vec<f64>> {
+fn run_function(output: &DerivationOutput, name: &str, state: &[[f64; 3]; 3]) -> Option<Vec<f64>> {
     let f = output.functions.iter().find(|f| f.name == name)?;
     let called = ["__passive_forces", "__passive_derivatives"].map(|other| match other == name {
         true => Vec::new(),
         false if name.starts_with("__") => Vec::new(),
         false => run_function(output, other, state).unwrap_or_default(),
     });
-    let symbol_value = |s| match Quantity::from_symbol(s) {
+    let state_value_of_symbol = |s| match Quantity::from_symbol(s) {
         Quantity::Configuration(k) => state[0][k],
         Quantity::Velocity(k) => state[1][k],
         Quantity::Acceleration(k) => state[2][k],
@@ -69,7 +69,7 @@ fn run_function(output: &Output, name: &str, state: &[[f64; 3]; 3]) -> Option<Ve
         Quantity::PassiveDerivative(k) => called[1][k],
         _ => f64::NAN,
     };
-    Some(f.program.interpret_program(&symbol_value))
+    Some(f.program.interpret_program(&state_value_of_symbol))
 }
 
 /// Checks that the forces of springs add up. With few springs every function contains their forces; with many
@@ -77,12 +77,14 @@ fn run_function(output: &Output, name: &str, state: &[[f64; 3]; 3]) -> Option<Ve
 #[test]
 fn forces_of_many_springs_equal_sums_of_few() {
     const EACH: usize = 20;
-    let (whole, none) =
-        (compile_mechanism(arm_with_springs(0..5 * EACH)), compile_mechanism(arm_with_springs(0..0)));
-    let parts: Vec<Output> =
-        (0..5).map(|k| compile_mechanism(arm_with_springs(k * EACH..(k + 1) * EACH))).collect();
+    let (whole, none) = (
+        compile_mechanism(arm_source_with_springs(0..5 * EACH)),
+        compile_mechanism(arm_source_with_springs(0..0)),
+    );
+    let parts: Vec<DerivationOutput> =
+        (0..5).map(|k| compile_mechanism(arm_source_with_springs(k * EACH..(k + 1) * EACH))).collect();
     let has_passive_forces_function =
-        |output: &Output| output.functions.iter().any(|f| f.name == "__passive_forces");
+        |output: &DerivationOutput| output.functions.iter().any(|f| f.name == "__passive_forces");
     assert!(
         has_passive_forces_function(&whole) && !parts.iter().any(has_passive_forces_function),
         "what is compared is derived in two ways"
@@ -91,8 +93,9 @@ fn forces_of_many_springs_equal_sums_of_few() {
     for _ in 0..5 {
         let state: [[f64; 3]; 3] = std::array::from_fn(|_| random.random_vector::<3>(1.5).into());
         for name in ["bias_forces", "inverse_dynamics", "inverse_dynamics_derivatives", "momentum_rate"] {
-            let values_of_output =
-                |output: &Output| run_function(output, name, &state).expect("the function is there");
+            let values_of_output = |output: &DerivationOutput| {
+                run_function(output, name, &state).expect("the function is there")
+            };
             let without = values_of_output(&none);
             let mut sum = without.clone();
             for part in &parts {
@@ -110,7 +113,7 @@ fn forces_of_many_springs_equal_sums_of_few() {
 #[test]
 fn code_length_is_linear_in_the_number_of_springs() {
     let size_of_generated_code = |springs: usize| {
-        let output = compile_mechanism(arm_with_springs(0..springs));
+        let output = compile_mechanism(arm_source_with_springs(0..springs));
         let operation_count = |name: &str| {
             let f = output.functions.iter().find(|f| f.name == name).expect("the function is there");
             f.program.counts.total_operations()
@@ -124,7 +127,7 @@ fn code_length_is_linear_in_the_number_of_springs() {
             assert!(operation_count(name) < 600, "{name}: {}", operation_count(name));
         }
         let all: usize = output.functions.iter().map(|f| f.program.counts.total_operations()).sum();
-        let [arguments, item] = arm_with_springs(0..springs);
+        let [arguments, item] = arm_source_with_springs(0..springs);
         [all, expand(arguments, item, Path::new("")).text.len()]
     };
     let (some, more) = (size_of_generated_code(150), size_of_generated_code(300));

@@ -9,7 +9,7 @@ use support::random::Random;
 
 /// Four bars in a plane, with springs out of the plane and a drive in time.
 #[mechanism(gravity = -9.81 * y)]
-struct Tent {
+struct DrivenBarsWithSpatialSprings {
     k: f64,
     #[body(mass = 1, com = 0.5 * x, inertia = rod(1, 1, x))]
     crank: Body,
@@ -481,7 +481,7 @@ struct Tent {
 
 #[test]
 fn constraints_hold_under_many_springs_at_any_time() {
-    let tent = Tent { k: 20.0 };
+    let tent = DrivenBarsWithSpatialSprings { k: 20.0 };
     let mut random = Random::new(35);
     for t in [0.0, 0.4, 2.0] {
         let m = at(&tent, t);

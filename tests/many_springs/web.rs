@@ -6,7 +6,7 @@ use support::random::Random;
 
 /// Two links in a plane, with springs out of the plane.
 #[mechanism(derivatives, batch)]
-struct Web {
+struct PlanarLinksWithSpatialSprings {
     k: f64,
     #[body(mass = 1, com = 0.5 * x, inertia = rod(1, 1, x))]
     upper: Body,
@@ -470,7 +470,7 @@ struct Web {
 
 #[test]
 fn batches_evaluate_passive_forces_in_lanes() {
-    let m = Web { k: 20.0 };
+    let m = PlanarLinksWithSpatialSprings { k: 20.0 };
     let mut random = Random::new(34);
     let states: [[SVector<f64, 2>; 3]; 4] =
         std::array::from_fn(|_| std::array::from_fn(|_| random.random_vector::<2>(2.0)));

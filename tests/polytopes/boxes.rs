@@ -1,6 +1,6 @@
 //! The hull of the corners of a box behaves like the box.
 
-use crate::shapes::{Random, corners, placed, signed_distance};
+use crate::shapes::{Random, box_corners, points_in_pose, signed_distance};
 use linkwork::nalgebra::UnitQuaternion;
 use linkwork::prelude::*;
 
@@ -75,7 +75,7 @@ fn configuration(place: [f64; 3], turn: UnitQuaternion<f64>) -> SVector<f64, 14>
 }
 
 /// Returns the largest differences of configuration and velocity after a motion.
-fn largest_difference(tilt: f64, q: SVector<f64, 14>, duration: f64) -> [f64; 2] {
+fn largest_state_differences(tilt: f64, q: SVector<f64, 14>, duration: f64) -> [f64; 2] {
     let v = SVector::<f64, 12>::zeros();
     let step = TimeStepping::step(1e-3);
     let boxes = simulate(&Boxes { tilt }).from(q, v).method(step).duration(duration).finish().unwrap();
@@ -96,12 +96,12 @@ fn hull_of_a_box_has_nine_contact_points() {
 fn hulls_of_boxes_have_the_gaps_of_boxes() {
     let (m, mixed, mut random) = (Hulls { tilt: 0.0 }, BoxUnderHull { tilt: 0.0 }, Random(3));
     for k in 0..200 {
-        let turn = if k % 4 == 0 { UnitQuaternion::identity() } else { random.rotation() };
-        let place = random.point() * 0.3;
+        let turn = if k % 4 == 0 { UnitQuaternion::identity() } else { random.random_rotation() };
+        let place = random.random_point() * 0.3;
         let q = configuration([place[0], place[1], place[2] + 0.05], turn);
         let wanted = signed_distance(
-            &placed(&corners([0.3, 0.2, 0.05]), &turn, place),
-            &placed(&corners([0.2, 0.2, 0.1]), &UnitQuaternion::identity(), place * 0.0),
+            &points_in_pose(&box_corners([0.3, 0.2, 0.05]), &turn, place),
+            &points_in_pose(&box_corners([0.2, 0.2, 0.1]), &UnitQuaternion::identity(), place * 0.0),
         );
         let found = [m.contact_gaps(&q).rows(0, 9).min(), mixed.contact_gaps(&q).rows(0, 9).min()];
         assert!(found.iter().all(|found| (found - wanted).abs() < 1e-9), "{found:?} {wanted}");
@@ -113,7 +113,7 @@ fn hulls_of_boxes_have_the_gaps_of_boxes() {
 fn stacks_of_hulls_rest_like_boxes() {
     for (yaw, x, y) in [(0.0, 0.0, 0.0), (0.0, 0.05, 0.0), (0.4, 0.03, -0.06), (0.0, 0.1, 0.1)] {
         let q = configuration([x, y, 0.125], UnitQuaternion::from_euler_angles(0.0, 0.0, yaw));
-        let difference = largest_difference(0.0, q, 0.2);
+        let difference = largest_state_differences(0.0, q, 0.2);
         assert!(difference.iter().all(|x| *x < 1e-9), "{yaw} {x} {y}: {difference:?}");
     }
 }
@@ -122,7 +122,7 @@ fn stacks_of_hulls_rest_like_boxes() {
 #[test]
 fn hulls_slide_like_boxes() {
     let q = configuration([0.0, 0.02, 0.125], UnitQuaternion::from_euler_angles(0.0, 0.0, 0.3));
-    let difference = largest_difference(0.5, q, 0.15);
+    let difference = largest_state_differences(0.5, q, 0.15);
     assert!(difference.iter().all(|x| *x < 1e-9), "{difference:?}");
     let run = simulate(&Hulls { tilt: 0.5 }).from(q, [0.0; 12]).method(TimeStepping::step(1e-3));
     let speed = run.duration(0.25).finish().unwrap().v.fixed_rows::<3>(6).norm();
@@ -140,7 +140,7 @@ fn hulls_fall_like_boxes() {
         ([0.02, 0.01, 0.2], [0.1, 0.03, 0.3], 2e-6),
     ] {
         let turn = UnitQuaternion::from_euler_angles(angles[0], angles[1], angles[2]);
-        let difference = largest_difference(0.0, configuration(place, turn), 0.2);
+        let difference = largest_state_differences(0.0, configuration(place, turn), 0.2);
         assert!(difference.iter().all(|x| *x < tolerance), "{place:?}: {difference:?}");
     }
 }

@@ -1,6 +1,6 @@
 //! Derivatives of contacts of hulls, and of steps with them.
 
-use crate::distances::{Stone, configuration, least_gap};
+use crate::distances::{Stone, configuration, contact_with_least_gap};
 use crate::shapes::Random;
 use linkwork::discrete;
 use linkwork::nalgebra::UnitQuaternion;
@@ -13,12 +13,12 @@ fn contact_bias_is_the_rate_of_contact_velocities() {
     let (h, mut compared) = (1e-5, 0);
     for k in 0..100 {
         let body = k % 5;
-        let q = configuration(body, random.point() * 0.2, &random.rotation());
+        let q = configuration(body, random.random_point() * 0.2, &random.random_rotation());
         let mut v = SVector::<f64, 6>::zeros();
-        v.iter_mut().for_each(|v| *v = random.next());
-        let (contact, _) = least_gap(&m, body, &q);
+        v.iter_mut().for_each(|v| *v = random.next_random_number());
+        let (contact, _) = contact_with_least_gap(&m, body, &q);
         let [low, high] = [-h, h].map(|h| m.integrate(&q, &(v * h)));
-        if [&low, &high].iter().any(|q| least_gap(&m, body, q).0 != contact) {
+        if [&low, &high].iter().any(|q| contact_with_least_gap(&m, body, q).0 != contact) {
             continue;
         }
         let rows = Stone::CONTACT_ROWS[contact];
@@ -85,20 +85,20 @@ fn jacobians_of_steps_are_central_differences() {
         v[6] = speed;
         let u = SVector::from([push]);
         let found = discrete::transition(&m, &method, 0.0, &q, &v, &u).unwrap();
-        let next = |q: &SVector<f64, 14>, v: &SVector<f64, 12>, u: &SVector<f64, 1>| {
+        let step_transition = |q: &SVector<f64, 14>, v: &SVector<f64, 12>, u: &SVector<f64, 1>| {
             discrete::transition(&m, &method, 0.0, q, v, u).unwrap()
         };
         let h = 1e-5;
         for k in 6..12 {
             let mut step = SVector::<f64, 12>::zeros();
             step[k] = h;
-            let (low, high) = (next(&q, &(v - step), &u), next(&q, &(v + step), &u));
+            let (low, high) = (step_transition(&q, &(v - step), &u), step_transition(&q, &(v + step), &u));
             let difference = (high.v - low.v) / (2.0 * h);
             let column = found.v_by_v.column(k);
             assert!((column - difference).amax() < 1e-4, "{push} {k}: {column} {difference}");
         }
         let step = SVector::from([h]);
-        let (low, high) = (next(&q, &v, &(u - step)), next(&q, &v, &(u + step)));
+        let (low, high) = (step_transition(&q, &v, &(u - step)), step_transition(&q, &v, &(u + step)));
         assert!((found.v_by_u.column(0) - (high.v - low.v) / (2.0 * h)).amax() < 1e-6);
     }
 }

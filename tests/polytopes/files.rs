@@ -1,6 +1,6 @@
 //! Meshes of files collide with each other as their hulls.
 
-use crate::shapes::{Point, Random, placed, signed_distance};
+use crate::shapes::{Point, Random, points_in_pose, signed_distance};
 use linkwork::nalgebra::UnitQuaternion;
 use linkwork::prelude::*;
 
@@ -33,9 +33,9 @@ fn meshes_have_the_distance_of_their_hulls() {
         .collect();
     let rock: Vec<Point> = STONE.map(Point::from).into();
     for _ in 0..50 {
-        let (turn, direction) = (random.rotation(), random.point().normalize());
-        let place = Point::new(0.5, 0.0, 3.0) + direction * (6.0 + random.next());
-        let wanted = signed_distance(&placed(&small, &turn, place), &rock);
+        let (turn, direction) = (random.random_rotation(), random.random_point().normalize());
+        let place = Point::new(0.5, 0.0, 3.0) + direction * (6.0 + random.next_random_number());
+        let wanted = signed_distance(&points_in_pose(&small, &turn, place), &rock);
         let c = turn.coords;
         let q = [place[0], place[1], place[2], c[0], c[1], c[2], c[3]].into();
         let found = Stone {}.contact_gaps(&q).min();

@@ -145,8 +145,8 @@ fn falling_tetrahedron_gains_no_energy() {
 fn deep_overlaps_are_separated() {
     let (m, mut random) = (Shards {}, Random(5));
     for _ in 0..6 {
-        let place = random.point() * 0.03;
-        let q = configuration([place[0], place[1], place[2] - 0.06], random.rotation());
+        let place = random.random_point() * 0.03;
+        let q = configuration([place[0], place[1], place[2] - 0.06], random.random_rotation());
         assert!(m.contact_gaps(&q).min() < -0.01);
         let run = simulate(&m)
             .from(q, [0.0; 12])

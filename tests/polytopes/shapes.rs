@@ -46,27 +46,27 @@ pub struct Random(pub u64);
 
 impl Random {
     /// Returns a number between −1 and 1.
-    pub fn next(&mut self) -> f64 {
+    pub fn next_random_number(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 33) as f64 / f64::from(1_u32 << 30) - 1.0
     }
 
-    pub fn point(&mut self) -> Point {
-        Point::new(self.next(), self.next(), self.next())
+    pub fn random_point(&mut self) -> Point {
+        Point::new(self.next_random_number(), self.next_random_number(), self.next_random_number())
     }
 
-    pub fn rotation(&mut self) -> UnitQuaternion<f64> {
-        UnitQuaternion::from_scaled_axis(self.point() * 3.0)
+    pub fn random_rotation(&mut self) -> UnitQuaternion<f64> {
+        UnitQuaternion::from_scaled_axis(self.random_point() * 3.0)
     }
 }
 
 /// Returns points in the pose of their body.
-pub fn placed(points: &[[f64; 3]], turn: &UnitQuaternion<f64>, place: Point) -> Vec<Point> {
+pub fn points_in_pose(points: &[[f64; 3]], turn: &UnitQuaternion<f64>, place: Point) -> Vec<Point> {
     points.iter().map(|p| turn * Point::from(*p) + place).collect()
 }
 
 /// Returns the corners of a box.
-pub fn corners(lengths: [f64; 3]) -> Vec<[f64; 3]> {
+pub fn box_corners(lengths: [f64; 3]) -> Vec<[f64; 3]> {
     let corner =
         |k: usize| core::array::from_fn(|axis| lengths[axis] * if k >> axis & 1 == 0 { -0.5 } else { 0.5 });
     (0..8).map(corner).collect()
@@ -79,12 +79,12 @@ pub fn signed_distance(a: &[Point], b: &[Point]) -> f64 {
     if separation <= 0.0 { separation } else { least_distance(a, b) }
 }
 
-fn pairs(points: &[Point]) -> Vec<[Point; 2]> {
+fn point_pairs(points: &[Point]) -> Vec<[Point; 2]> {
     let ends = (0..points.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
     ends.map(|(i, j)| [points[i], points[j]]).collect()
 }
 
-fn triples(points: &[Point]) -> Vec<[Point; 3]> {
+fn point_triples(points: &[Point]) -> Vec<[Point; 3]> {
     let ends = (0..points.len()).flat_map(|i| (0..i).flat_map(move |j| (0..j).map(move |k| (i, j, k))));
     ends.map(|(i, j, k)| [points[i], points[j], points[k]]).collect()
 }
@@ -93,18 +93,21 @@ fn triples(points: &[Point]) -> Vec<[Point; 3]> {
 /// the common normals of all lines through two points of each. A facet of the Minkowski difference of two
 /// hulls has one of these normals.
 fn largest_separation(a: &[Point], b: &[Point]) -> f64 {
-    let normals = triples(a).into_iter().chain(triples(b)).map(|[p, q, r]| (q - p).cross(&(r - p)));
-    let lines = |points: &[Point]| pairs(points).into_iter().map(|[p, q]| q - p).collect::<Vec<_>>();
-    let (own, other) = (lines(a), lines(b));
+    let normals =
+        point_triples(a).into_iter().chain(point_triples(b)).map(|[p, q, r]| (q - p).cross(&(r - p)));
+    let line_directions =
+        |points: &[Point]| point_pairs(points).into_iter().map(|[p, q]| q - p).collect::<Vec<_>>();
+    let (own, other) = (line_directions(a), line_directions(b));
     let common = own.iter().flat_map(|x| other.iter().map(move |y| x.cross(y)));
     let all = normals.chain(common).filter(|n| n.norm() > 1e-9).map(|n| n.normalize());
     let separation = |n: Point| {
-        let bound = |points: &[Point], f: fn(f64, f64) -> f64, from: f64| {
+        let projection_bound = |points: &[Point], f: fn(f64, f64) -> f64, from: f64| {
             points.iter().map(|p| n.dot(p)).fold(from, f)
         };
-        let (low, high) = (bound(b, f64::min, f64::INFINITY), bound(a, f64::max, f64::NEG_INFINITY));
+        let (low, high) =
+            (projection_bound(b, f64::min, f64::INFINITY), projection_bound(a, f64::max, f64::NEG_INFINITY));
         let (other_low, other_high) =
-            (bound(a, f64::min, f64::INFINITY), bound(b, f64::max, f64::NEG_INFINITY));
+            (projection_bound(a, f64::min, f64::INFINITY), projection_bound(b, f64::max, f64::NEG_INFINITY));
         (low - high).max(other_low - other_high)
     };
     all.map(separation).fold(f64::NEG_INFINITY, f64::max)
@@ -113,13 +116,14 @@ fn largest_separation(a: &[Point], b: &[Point]) -> f64 {
 /// Returns the least distance of a point of one set from a triangle of the other, or of two lines between
 /// points of each set.
 fn least_distance(a: &[Point], b: &[Point]) -> f64 {
-    let of_triangles = |points: &[Point], others: &[Point]| {
-        let all = triples(points).into_iter().flat_map(|t| others.iter().map(move |p| (t, *p)));
+    let least_height_above_triangles = |points: &[Point], others: &[Point]| {
+        let all = point_triples(points).into_iter().flat_map(|t| others.iter().map(move |p| (t, *p)));
         all.filter_map(|(t, p)| height_above_triangle(p, t)).fold(f64::INFINITY, f64::min)
     };
-    let lines = pairs(a).into_iter().flat_map(|own| pairs(b).into_iter().map(move |other| (own, other)));
+    let lines =
+        point_pairs(a).into_iter().flat_map(|own| point_pairs(b).into_iter().map(move |other| (own, other)));
     let of_lines = lines.map(|(own, other)| distance_of_segments(own, other)).fold(f64::INFINITY, f64::min);
-    of_triangles(a, b).min(of_triangles(b, a)).min(of_lines)
+    least_height_above_triangles(a, b).min(least_height_above_triangles(b, a)).min(of_lines)
 }
 
 /// Returns the distance of a point from the plane of a triangle, if its foot is within the triangle.
@@ -130,11 +134,14 @@ fn height_above_triangle(p: Point, [a, b, c]: [Point; 3]) -> Option<f64> {
 }
 
 fn distance_of_segments([a, b]: [Point; 2], [c, d]: [Point; 2]) -> f64 {
-    let to_segment = |p: Point, a: Point, b: Point| {
+    let distance_to_segment = |p: Point, a: Point, b: Point| {
         let t = ((p - a).dot(&(b - a)) / (b - a).norm_squared()).clamp(0.0, 1.0);
         (p - a - (b - a) * t).norm()
     };
-    let ends = to_segment(a, c, d).min(to_segment(b, c, d)).min(to_segment(c, a, b)).min(to_segment(d, a, b));
+    let ends = distance_to_segment(a, c, d)
+        .min(distance_to_segment(b, c, d))
+        .min(distance_to_segment(c, a, b))
+        .min(distance_to_segment(d, a, b));
     let n = (b - a).cross(&(d - c));
     let crossing = Matrix3::from_columns(&[b - a, c - d, n]).try_inverse().and_then(|inverse| {
         let at = inverse * (c - a);

@@ -2,14 +2,14 @@
 //! transformed by Kane's definition `u = Y(q) v`, and derivatives equal finite differences.
 
 use super::random_tree::{Tree, random_trees};
-use linkwork_compiler::derive::Output;
+use linkwork_compiler::derive::DerivationOutput;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::eval::eval;
 use linkwork_compiler::expr::sample::sample_of_symbol;
 use linkwork_compiler::expr::{Expr, Graph, Symbol};
 use linkwork_compiler::kinematics::{configuration_rate, random_configuration};
 use linkwork_compiler::mechanism::{Chart, Model, Quantity};
-use linkwork_compiler::{compile, read_source};
+use linkwork_compiler::{compile, parse_source_and_import};
 use proptest::prelude::*;
 use std::fmt::Write;
 use std::path::Path;
@@ -26,7 +26,7 @@ type Vector = Vec<f64>;
 
 /// State of a mechanism with all other arguments of the generated functions.
 #[derive(Clone, Default)]
-struct State {
+struct StateArguments {
     q: Vector,
     v: Vector,
     a: Vector,
@@ -35,8 +35,8 @@ struct State {
     given: Vector,
 }
 
-impl State {
-    fn value_of_symbol(&self, s: Symbol) -> f64 {
+impl StateArguments {
+    fn state_value_of_symbol(&self, s: Symbol) -> f64 {
         match Quantity::from_symbol(s) {
             Quantity::Configuration(k) => self.q[k],
             Quantity::Velocity(k) => self.v[k],
@@ -52,7 +52,7 @@ impl State {
 /// Compiled mechanism: its model and its generated functions.
 struct CompiledMechanism<'g> {
     model: Model<'g>,
-    output: Output,
+    output: DerivationOutput,
 }
 
 impl<'g> CompiledMechanism<'g> {
@@ -62,21 +62,22 @@ impl<'g> CompiledMechanism<'g> {
     ) -> Result<CompiledMechanism<'g>, Vec<String>> {
         let parse_tokens = |text: &str| text.parse().expect("the generated source is Rust");
         let mut cx = Diagnostics::new();
-        let source = read_source(parse_tokens(arguments), parse_tokens(item), Path::new(""), &mut cx);
+        let source =
+            parse_source_and_import(parse_tokens(arguments), parse_tokens(item), Path::new(""), &mut cx);
         let found = source.and_then(|source| compile(&source, graph, &mut cx));
         match found {
             Some((model, output)) => {
-                let _ = cx.messages();
+                let _ = cx.full_message_texts();
                 Ok(CompiledMechanism { model, output })
             }
-            None => Err(cx.messages()),
+            None => Err(cx.full_message_texts()),
         }
     }
 
-    fn run_function(&self, name: &str, state: &State) -> Vector {
+    fn run_function(&self, name: &str, state: &StateArguments) -> Vector {
         let function = self.output.functions.iter().find(|f| f.name == name);
         let function = function.unwrap_or_else(|| panic!("there is a function `{name}`"));
-        function.program.interpret_program(&|s| state.value_of_symbol(s))
+        function.program.interpret_program(&|s| state.state_value_of_symbol(s))
     }
 
     /// Returns the rates of the configuration at the joint velocities `v`.
@@ -84,18 +85,18 @@ impl<'g> CompiledMechanism<'g> {
         let native = Model { speeds: None, ..self.model.clone() };
         let rates: Vec<Expr<'_>> =
             (0..native.nq()).map(|k| configuration_rate(native.configuration_space(), k)).collect();
-        let state = State { q: q.to_vec(), v: v.to_vec(), ..State::default() };
-        eval(&rates, &|s| state.value_of_symbol(s))
+        let state = StateArguments { q: q.to_vec(), v: v.to_vec(), ..StateArguments::default() };
+        eval(&rates, &|s| state.state_value_of_symbol(s))
     }
 }
 
 /// Returns the matrices of generalized speeds at a configuration, as lists of rows: `Y` of `u = Y v` and `Z`
 /// of `v = Z u`.
-fn speed_transformation(model: &Model<'_>, q: &[f64]) -> [Vec<Vector>; 2] {
+fn speed_transformation_matrices(model: &Model<'_>, q: &[f64]) -> [Vec<Vector>; 2] {
     let speeds = model.speeds.as_ref().expect("there are speeds");
-    let state = State { q: q.to_vec(), ..State::default() };
+    let state = StateArguments { q: q.to_vec(), ..StateArguments::default() };
     [&speeds.velocity_to_speed_matrix, &speeds.rates]
-        .map(|m| m.iter().map(|row| eval(row, &|s| state.value_of_symbol(s))).collect())
+        .map(|m| m.iter().map(|row| eval(row, &|s| state.state_value_of_symbol(s))).collect())
 }
 
 fn matrix_vector_product(m: &[Vector], v: &[f64]) -> Vector {
@@ -183,7 +184,7 @@ fn random_speed_declarations(plain: &Model<'_>, fields: &str, random: &mut Rando
 
 /// Checks a random tree with random generalized speeds. Returns `false`, without a check, for trees without
 /// plain coordinates or ball joints, and for trees that do not compile.
-fn check_tree(tree: &Tree, seed: u64) -> bool {
+fn check_tree_with_random_speeds(tree: &Tree, seed: u64) -> bool {
     let (arguments, item) = tree.tree_source();
     let arguments = format!("{arguments}, {WORDS}");
     let graph = Graph::new();
@@ -209,22 +210,23 @@ fn check_functions_in_speeds(
     seed: u64,
 ) {
     let n = plain.model.nv();
-    let mut some = |count: usize| -> Vector { (0..count).map(|_| random.uniform_number(1.0)).collect() };
+    let mut random_vector =
+        |count: usize| -> Vector { (0..count).map(|_| random.uniform_number(1.0)).collect() };
     let q = random_configuration(&plain.model, seed);
-    let [y, z] = speed_transformation(&with.model, &q);
+    let [y, z] = speed_transformation_matrices(&with.model, &q);
     let identity: Vec<Vector> =
         (0..n).map(|i| (0..n).map(|j| f64::from(u8::from(i == j))).collect()).collect();
     assert_close("inverse", &matrix_product(&y, &z).concat(), &identity.concat(), TOLERANCE);
-    let ours = State {
+    let ours = StateArguments {
         q: q.clone(),
-        v: some(n),
-        a: some(n),
-        tau: some(n),
-        u: some(plain.model.nu()),
-        given: some(n),
+        v: random_vector(n),
+        a: random_vector(n),
+        tau: random_vector(n),
+        u: random_vector(plain.model.nu()),
+        given: random_vector(n),
     };
     let (to_rates, to_forces) = (transposed_rows(&z), transposed_rows(&y));
-    let theirs = State {
+    let theirs = StateArguments {
         v: matrix_vector_product(&z, &ours.v),
         a: with.run_function("__rate_accelerations", &ours),
         tau: matrix_vector_product(&to_forces, &ours.tau),
@@ -235,17 +237,17 @@ fn check_functions_in_speeds(
         let moved = displaced_vector(&q, e, &plain.configuration_rates(&q, &theirs.v));
         with.run_function(
             "rates_of_speeds",
-            &State { q: moved, v: displaced_vector(&ours.v, e, &ours.a), ..ours.clone() },
+            &StateArguments { q: moved, v: displaced_vector(&ours.v, e, &ours.a), ..ours.clone() },
         )
     };
     assert_close("accelerations of the joints", &theirs.a, &derivative_at_zero(rates_after), DIFFERENCES);
-    let assert_same_function = |name: &str| {
+    let assert_same_function_results = |name: &str| {
         assert_close(name, &with.run_function(name, &ours), &plain.run_function(name, &theirs), TOLERANCE)
     };
     for name in
         ["kinetic_energy", "potential_energy", "momentum", "dissipated_power", "control_power", "hamiltonian"]
     {
-        assert_same_function(name);
+        assert_same_function_results(name);
     }
     for name in ["inverse_dynamics", "generalized_forces", "generalized_momentum"] {
         assert_close(
@@ -265,7 +267,7 @@ fn check_functions_in_speeds(
         &transposed_rows(&mass).concat(),
         TOLERANCE,
     );
-    let still = State { a: vec![0.0; n], ..ours.clone() };
+    let still = StateArguments { a: vec![0.0; n], ..ours.clone() };
     assert_close(
         "bias",
         &with.run_function("bias_forces", &ours),
@@ -273,7 +275,7 @@ fn check_functions_in_speeds(
         TOLERANCE,
     );
     let forward = with.run_function("forward_dynamics", &ours);
-    let moving = State { a: forward.clone(), ..ours.clone() };
+    let moving = StateArguments { a: forward.clone(), ..ours.clone() };
     assert_close(
         "forward dynamics",
         &with.run_function("__rate_accelerations", &moving),
@@ -299,12 +301,12 @@ fn check_functions_in_speeds(
 fn check_rates_along_motion(
     plain: &CompiledMechanism<'_>,
     with: &CompiledMechanism<'_>,
-    ours: &State,
-    theirs: &State,
+    ours: &StateArguments,
+    theirs: &StateArguments,
 ) {
     let n = plain.model.nv();
     let way = plain.configuration_rates(&ours.q, &theirs.v);
-    let state_after = |e: f64| State {
+    let state_after = |e: f64| StateArguments {
         q: displaced_vector(&ours.q, e, &way),
         v: displaced_vector(&ours.v, e, &ours.a),
         ..ours.clone()
@@ -313,10 +315,11 @@ fn check_rates_along_motion(
     let lacking: Vector =
         with.run_function("inverse_dynamics", ours).iter().zip(&rate).map(|(tau, rate)| rate - tau).collect();
     assert_close("momentum rate", &with.run_function("momentum_rate", ours), &lacking, DIFFERENCES);
-    let matrix_of =
-        |name: &str, state: &State, rows: usize| rows_of_matrix(&with.run_function(name, state), rows);
-    let still = State { a: vec![0.0; n], ..ours.clone() };
-    let state_with_fixed_speeds = |e: f64| State { v: ours.v.clone(), ..state_after(e) };
+    let matrix_of = |name: &str, state: &StateArguments, rows: usize| {
+        rows_of_matrix(&with.run_function(name, state), rows)
+    };
+    let still = StateArguments { a: vec![0.0; n], ..ours.clone() };
+    let state_with_fixed_speeds = |e: f64| StateArguments { v: ours.v.clone(), ..state_after(e) };
     let bias = derivative_at_zero(|e| {
         matrix_vector_product(
             &matrix_of("centroidal_momentum_matrix", &state_with_fixed_speeds(e), 6),
@@ -343,15 +346,15 @@ fn check_rates_along_motion(
 fn check_derivatives(
     plain: &CompiledMechanism<'_>,
     with: &CompiledMechanism<'_>,
-    ours: &State,
+    ours: &StateArguments,
     z: &[Vector],
 ) {
     let n = plain.model.nv();
-    let column_of_rate_matrix = |i: usize| -> Vector { z.iter().map(|row| row[i]).collect() };
+    let speed_to_velocity_column = |i: usize| -> Vector { z.iter().map(|row| row[i]).collect() };
     let derivative_by_coordinate = |name: &str, i: usize| {
-        let way = plain.configuration_rates(&ours.q, &column_of_rate_matrix(i));
+        let way = plain.configuration_rates(&ours.q, &speed_to_velocity_column(i));
         derivative_at_zero(|e| {
-            with.run_function(name, &State { q: displaced_vector(&ours.q, e, &way), ..ours.clone() })
+            with.run_function(name, &StateArguments { q: displaced_vector(&ours.q, e, &way), ..ours.clone() })
         })
     };
     let unit_vector = |i: usize| -> Vector { (0..n).map(|j| f64::from(u8::from(i == j))).collect() };
@@ -359,7 +362,7 @@ fn check_derivatives(
         derivative_at_zero(|e| {
             with.run_function(
                 name,
-                &State { v: displaced_vector(&ours.v, e, &unit_vector(i)), ..ours.clone() },
+                &StateArguments { v: displaced_vector(&ours.v, e, &unit_vector(i)), ..ours.clone() },
             )
         })
     };
@@ -393,7 +396,7 @@ proptest! {
     #![proptest_config(property_test_config(12))]
     #[test]
     fn random_speeds_transform_all_functions(tree in random_trees(4), seed in 0..50_u64) {
-        prop_assume!(check_tree(&tree, seed));
+        prop_assume!(check_tree_with_random_speeds(&tree, seed));
     }
 }
 

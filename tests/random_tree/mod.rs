@@ -6,7 +6,7 @@ use std::fmt::Write;
 
 /// Random joint with its child body and the index of its parent body.
 #[derive(Clone, Debug)]
-struct Limb {
+struct JointWithChildBody {
     kind: usize,
     parent: usize,
     /// Random numbers from which axes, positions and masses are computed.
@@ -20,7 +20,7 @@ struct Limb {
 /// Random mechanism: a tree of bodies with elements between them.
 #[derive(Clone, Debug)]
 pub struct Tree {
-    limbs: Vec<Limb>,
+    limbs: Vec<JointWithChildBody>,
     /// Elements between two bodies: index of the declaration in `TIES`, first body, second body. If both
     /// bodies are the same, one end is on the ground.
     ties: Vec<(usize, usize, usize)>,
@@ -44,7 +44,7 @@ const TIES: [&str; 9] = [
 /// Returns trees with up to `joints` joints, with more free joints than [`random_trees`] has, and with
 /// elements between two bodies or a body and the ground.
 #[allow(dead_code, reason = "not every test that has trees has tied ones")]
-pub fn tied_trees(joints: usize) -> impl Strategy<Value = Tree> {
+pub fn random_trees_with_elements(joints: usize) -> impl Strategy<Value = Tree> {
     let ties = vec((0..TIES.len(), 0..8_usize, 0..8_usize), 0..=3);
     let free = vec(0..3_usize, joints);
     (random_trees(joints), ties, free).prop_map(|(mut tree, ties, free)| {
@@ -58,7 +58,13 @@ pub fn tied_trees(joints: usize) -> impl Strategy<Value = Tree> {
 /// Returns trees with up to `joints` joints of any kind.
 pub fn random_trees(joints: usize) -> impl Strategy<Value = Tree> {
     let limb = (0..KINDS.len(), 0_usize..8, vec(-1.0..1.0_f64, 24), any::<bool>(), any::<bool>()).prop_map(
-        |(kind, parent, numbers, plain_axes, symbolic)| Limb { kind, parent, numbers, plain_axes, symbolic },
+        |(kind, parent, numbers, plain_axes, symbolic)| JointWithChildBody {
+            kind,
+            parent,
+            numbers,
+            plain_axes,
+            symbolic,
+        },
     );
     (vec(limb, 1..=joints), [-10.0..10.0_f64, -10.0..10.0_f64, -10.0..10.0_f64])
         .prop_map(|(limbs, gravity)| Tree { limbs, ties: Vec::new(), gravity })
@@ -112,7 +118,7 @@ impl Tree {
     }
 }
 
-impl Limb {
+impl JointWithChildBody {
     fn stored_number_at_index(&self, k: usize) -> f64 {
         self.numbers[k % self.numbers.len()]
     }

@@ -9,7 +9,7 @@ use std::fmt::Write;
 
 /// Random mechanism with all elements other than joints.
 #[derive(Clone, Debug)]
-pub struct World {
+pub struct RandomElementMechanism {
     root: usize,
     numbers: Vec<f64>,
     /// Whether the mechanism contains each element of `ACTIONS`.
@@ -31,9 +31,9 @@ const ROOTS: [&str; 8] = [
 ];
 
 /// Returns a strategy that generates random mechanisms.
-pub fn random_worlds() -> impl Strategy<Value = World> {
+pub fn random_element_mechanisms() -> impl Strategy<Value = RandomElementMechanism> {
     (0..ROOTS.len(), vec(-1.0..1.0_f64, 24), vec(any::<bool>(), ACTIONS.len()), any::<bool>())
-        .prop_map(|(root, numbers, chosen, time)| World { root, numbers, chosen, time })
+        .prop_map(|(root, numbers, chosen, time)| RandomElementMechanism { root, numbers, chosen, time })
 }
 
 /// Bodies, frames and points of the mechanism. `#` is a random number, `@` an expression of time, or a number
@@ -129,9 +129,9 @@ pub const OUTPUTS: [(&str, &str, &str); 18] = [
     ("d6", "alpha(placed / ground / ground)", "ground"),
 ];
 
-impl World {
+impl RandomElementMechanism {
     /// Returns the generated source: the arguments of the attribute and the struct.
-    pub fn world_source(&self) -> (String, String) {
+    pub fn element_mechanism_source(&self) -> (String, String) {
         let mut template = PLACES.to_string();
         for (action, _) in ACTIONS.iter().zip(&self.chosen).filter(|(_, chosen)| **chosen) {
             let _ = writeln!(template, "    {action}");

@@ -62,7 +62,7 @@ pub struct Marble {
 /// Double pendulum with point masses on a cart. Its tip stays at a constant distance from a driven peg, and
 /// the velocity of the elbow is a function of shoulder angle and cart velocity.
 #[mechanism(gravity = -9.81 * y, second_derivatives)]
-struct Driven {
+struct PendulumsTiedToDrivenPeg {
     sway: f64,
     #[body(mass = 0.8)]
     cart: Body,
@@ -113,8 +113,8 @@ fn constrained_accelerations(sway: f64, t: f64, x: &[HyperDual; 9]) -> [HyperDua
     let peg = [number(1.0), number(0.2 * wave - 1.1)];
     let place = [x[0] + reach[0] * s + reach[1] * s2, -(reach[0] * c + reach[1] * c2)];
     let apart = [place[0] - peg[0], place[1] - peg[1]];
-    let velocity_component = |d: usize| hand[0][d] * v0 + hand[1][d] * v1 + hand[2][d] * v2;
-    let leaving = [velocity_component(0), velocity_component(1) - number(0.2 * sway * slope)];
+    let hand_velocity_component = |d: usize| hand[0][d] * v0 + hand[1][d] * v1 + hand[2][d] * v2;
+    let leaving = [hand_velocity_component(0), hand_velocity_component(1) - number(0.2 * sway * slope)];
     let free = [end[0], end[1] + number(0.2 * sway * sway * wave)];
     let two = number(2.0);
     let rows = [hand.map(|column| two * dot_product(apart, column)), [-s, zero, number(1.0)]];
@@ -153,7 +153,7 @@ fn acceleration_hessian(
 
 #[test]
 fn hand_derived_equations_have_the_generated_second_derivatives() {
-    let (m, t) = (Driven { sway: 2.0 }, 0.4);
+    let (m, t) = (PendulumsTiedToDrivenPeg { sway: 2.0 }, 0.4);
     for seed in 0..8 {
         let mut random = Random::new(seed);
         let (q, v) = (random.random_vector::<3>(1.2), random.random_vector::<3>(2.0));
@@ -186,7 +186,7 @@ fn constrained_second_derivatives_agree_with_differences() {
     check_second_derivatives("four-bar linkage", &FourBar {}, 2.0);
     check_second_derivatives("tied bodies", &TiedFlyingBody {}, 3.0);
     check_second_derivatives("marble", &Marble {}, 1.0);
-    check_second_derivatives("driven", &Driven { sway: 2.0 }, 1.0);
+    check_second_derivatives("driven", &PendulumsTiedToDrivenPeg { sway: 2.0 }, 1.0);
 }
 
 #[test]
@@ -205,7 +205,7 @@ fn constrained_step_second_derivatives_agree_with_differences() {
         v.add_scalar(0.3),
     );
 
-    let m = Driven { sway: 2.0 };
+    let m = PendulumsTiedToDrivenPeg { sway: 2.0 };
     let q = m.assemble(0.3, &[0.2, 0.4, 0.5].into(), &[0]).expect("it can be assembled");
     let v = m.project_velocity(0.3, &q, &[0.7, 0.3, 0.0].into()).expect("it moves");
     check_second_derivatives_of_steps("driven", &m, &Rk4::step(0.02), 1.0, q, v);

@@ -19,14 +19,14 @@ impl HyperDual {
     }
 
     /// Returns the composition with a function that has this value and these first two derivatives.
-    fn map(self, [value, first, second]: [f64; 3]) -> HyperDual {
+    fn compose_with_function(self, [value, first, second]: [f64; 3]) -> HyperDual {
         let [a, b] = self.first;
         HyperDual { value, first: [first * a, first * b], second: first * self.second + second * a * b }
     }
 
     pub fn sin_cos(self) -> (HyperDual, HyperDual) {
         let (s, c) = self.value.sin_cos();
-        (self.map([s, c, -s]), self.map([c, -s, -c]))
+        (self.compose_with_function([s, c, -s]), self.compose_with_function([c, -s, -c]))
     }
 }
 
@@ -74,7 +74,7 @@ impl Div for HyperDual {
     type Output = HyperDual;
     fn div(self, other: HyperDual) -> HyperDual {
         let y = other.value;
-        self * other.map([1.0 / y, -1.0 / (y * y), 2.0 / (y * y * y)])
+        self * other.compose_with_function([1.0 / y, -1.0 / (y * y), 2.0 / (y * y * y)])
     }
 }
 

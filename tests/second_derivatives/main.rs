@@ -12,7 +12,7 @@ use linkwork::prelude::*;
 use linkwork::{Derivatives, SecondDerivatives, discrete};
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
-use linkwork_compiler::{compile, read_source};
+use linkwork_compiler::{compile, parse_source_and_import};
 use std::path::Path;
 use support::differences;
 use support::random::Random;
@@ -20,7 +20,7 @@ use support::random::Random;
 /// Flying body with rotors, two of which also exert a drag torque, and a pendulum on a ball joint below.
 /// Forces act along lines that the motion moves.
 #[mechanism(gravity = -9.81 * z, second_derivatives)]
-struct Carrier {
+struct FlyingBodyWithRotors {
     #[body(mass = 1.2, com = 0.02 * z, inertia = diagonal(0.01, 0.012, 0.02))]
     frame: Body,
     #[body(mass = 0.3, com = -0.4 * z + 0.05 * x, inertia = diagonal(0.004, 0.005, 0.001))]
@@ -41,7 +41,7 @@ struct Carrier {
 
 /// Pendulum with a motor and a second pendulum, on a pivot that is driven up and down.
 #[mechanism(gravity = -9.81 * y, second_derivatives)]
-struct Driven {
+struct DoublePendulumOnDrivenPivot {
     rate: f64,
     #[point(at = 0.1 * sin(rate * t) * y)]
     pivot: Point,
@@ -130,7 +130,7 @@ fn check_second_derivatives<M, const NQ: usize, const NV: usize, const NU: usize
             contracted_derivatives(&lambda, |d: &SVector<f64, NV>| inverse_derivatives(&q, &(v + d), &a).1),
             contracted_derivatives(&lambda, |d: &SVector<f64, NV>| inverse_derivatives(&q, &v, &(a + d)).0),
         ];
-        let size = largest_magnitude(&expected.concat_slices());
+        let size = largest_magnitude(&expected.concat_matrix_entries());
         for (what, (found, expected)) in
             ["qq", "qv", "vv", "qa"].iter().zip([qq, qv, vv, qa].iter().zip(&expected))
         {
@@ -148,7 +148,7 @@ fn check_second_derivatives<M, const NQ: usize, const NV: usize, const NU: usize
             contracted_derivatives(&lambda, |d: &SVector<f64, NV>| forward_derivatives(&q, &(v + d), &tau).1),
             contracted_derivatives(&lambda, |d: &SVector<f64, NV>| forward_derivatives(&q, &v, &(tau + d)).0),
         ];
-        let size = largest_magnitude(&expected.concat_slices());
+        let size = largest_magnitude(&expected.concat_matrix_entries());
         for (what, (found, expected)) in
             ["qq", "qv", "vv", "qτ"].iter().zip([qq, qv, vv, qf].iter().zip(&expected))
         {
@@ -206,27 +206,31 @@ fn check_second_derivatives<M, const NQ: usize, const NV: usize, const NU: usize
 }
 
 /// Concatenation of the entries of several matrices into one list, for comparisons.
-trait ConcatSlices {
-    fn concat_slices(&self) -> Vec<f64>;
+trait ConcatMatrixEntries {
+    fn concat_matrix_entries(&self) -> Vec<f64>;
 }
 
-impl<const N: usize, const NV: usize> ConcatSlices for [SMatrix<f64, NV, NV>; N] {
-    fn concat_slices(&self) -> Vec<f64> {
+impl<const N: usize, const NV: usize> ConcatMatrixEntries for [SMatrix<f64, NV, NV>; N] {
+    fn concat_matrix_entries(&self) -> Vec<f64> {
         self.iter().flat_map(|m| m.iter().copied()).collect()
     }
 }
 
 #[test]
 fn second_derivatives_agree_with_differences() {
-    check_second_derivatives("driven", &Driven { rate: 3.0 }, 1.0);
-    check_second_derivatives("carrier", &Carrier {}, 3.0);
+    check_second_derivatives("driven", &DoublePendulumOnDrivenPivot { rate: 3.0 }, 1.0);
+    check_second_derivatives("carrier", &FlyingBodyWithRotors {}, 3.0);
     check_second_derivatives("arm", &Panda, 5.0);
     check_second_derivatives("quadruped", &Solo, 5.0);
 }
 
 /// Checks second derivatives of steps against differences of their Jacobians.
-fn check_steps<M, S, const NV: usize, const NU: usize>(name: &str, m: &M, method: &S, push: f64)
-where
+fn check_steps_at_random_state<M, S, const NV: usize, const NU: usize>(
+    name: &str,
+    m: &M,
+    method: &S,
+    push: f64,
+) where
     M: SecondDerivatives<NV, NV, NU, Scalar = f64>,
     S: discrete::TwiceDifferentiableStep<f64>,
 {
@@ -270,10 +274,20 @@ fn check_second_derivatives_of_steps<M, S, const NV: usize, const NU: usize>(
 
 #[test]
 fn step_second_derivatives_agree_with_differences() {
-    check_steps("driven, Rk4", &Driven { rate: 3.0 }, &Rk4::step(0.05), 1.0);
-    check_steps("driven, Euler", &Driven { rate: 3.0 }, &SemiImplicitEuler::step(0.05), 1.0);
-    check_steps("arm, Rk4", &Panda, &Rk4::step(0.01), 5.0);
-    check_steps("arm, Euler", &Panda, &SemiImplicitEuler::step(0.01), 5.0);
+    check_steps_at_random_state(
+        "driven, Rk4",
+        &DoublePendulumOnDrivenPivot { rate: 3.0 },
+        &Rk4::step(0.05),
+        1.0,
+    );
+    check_steps_at_random_state(
+        "driven, Euler",
+        &DoublePendulumOnDrivenPivot { rate: 3.0 },
+        &SemiImplicitEuler::step(0.05),
+        1.0,
+    );
+    check_steps_at_random_state("arm, Rk4", &Panda, &Rk4::step(0.01), 5.0);
+    check_steps_at_random_state("arm, Euler", &Panda, &SemiImplicitEuler::step(0.01), 5.0);
 }
 
 /// Returns the numbers of operations of first and second derivatives of inverse dynamics.
@@ -281,9 +295,10 @@ fn derivative_operation_counts(arguments: &str) -> [usize; 2] {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let parse_tokens = |text: &str| text.parse().expect("the source is Rust");
     let (mut cx, graph) = (Diagnostics::new(), Graph::new());
-    let source = read_source(parse_tokens(arguments), parse_tokens("struct Robot;"), folder, &mut cx);
+    let source =
+        parse_source_and_import(parse_tokens(arguments), parse_tokens("struct Robot;"), folder, &mut cx);
     let Some((_, output)) = source.and_then(|s| compile(&s, &graph, &mut cx)) else {
-        panic!("{}", cx.messages().join("\n"));
+        panic!("{}", cx.full_message_texts().join("\n"));
     };
     ["inverse_dynamics_derivatives", "inverse_dynamics_second_derivatives"].map(|name| {
         let f = output.functions.iter().find(|f| f.name == name).expect("the function is generated");

@@ -3,7 +3,7 @@
 //! the start and at the end.
 
 use super::constrained::{Marble, TiedFlyingBody};
-use super::{Carrier, Solo};
+use super::{FlyingBodyWithRotors, Solo};
 use linkwork::prelude::*;
 use linkwork::{SecondDerivatives, discrete};
 use support::random::Random;
@@ -14,7 +14,7 @@ const WEIGHTS: [f64; 5] = [5.0 / 3.0, -5.0 / 21.0, 5.0 / 126.0, -5.0 / 1008.0, 1
 
 /// Compares quadratic forms of the second derivatives along random changes of state and inputs with
 /// differences.
-fn check_second_derivative_forms<M, S, const NQ: usize, const NV: usize, const NU: usize>(
+fn check_second_derivative_quadratic_forms<M, S, const NQ: usize, const NV: usize, const NU: usize>(
     name: &str,
     m: &M,
     method: &S,
@@ -64,15 +64,20 @@ fn check_second_derivative_forms<M, S, const NQ: usize, const NV: usize, const N
 #[test]
 fn rotating_body_step_second_derivatives_agree_with_differences() {
     let mut random = Random::new(3);
-    let m = Carrier {};
+    let m = FlyingBodyWithRotors {};
     let q = m.integrate(&m.neutral(), &random.random_vector(1.2));
     // Fast rotations, so that displacements rotate considerably within a step.
     let v = random.random_vector(4.0);
-    check_second_derivative_forms("carrier, Euler", &m, &SemiImplicitEuler::step(0.1), (&q, &v));
-    check_second_derivative_forms("carrier, Rk4", &m, &Rk4::step(0.1), (&q, &v));
-    check_second_derivative_forms("carrier from rest", &m, &Rk4::step(0.1), (&q, &SVector::zeros()));
+    check_second_derivative_quadratic_forms("carrier, Euler", &m, &SemiImplicitEuler::step(0.1), (&q, &v));
+    check_second_derivative_quadratic_forms("carrier, Rk4", &m, &Rk4::step(0.1), (&q, &v));
+    check_second_derivative_quadratic_forms(
+        "carrier from rest",
+        &m,
+        &Rk4::step(0.1),
+        (&q, &SVector::zeros()),
+    );
     let q = Solo.integrate(&Solo.neutral(), &random.random_vector(0.8));
-    check_second_derivative_forms(
+    check_second_derivative_quadratic_forms(
         "quadruped, Euler",
         &Solo,
         &SemiImplicitEuler::step(0.02),
@@ -86,13 +91,13 @@ fn constrained_rotating_body_step_second_derivatives_agree() {
     let start = m.integrate(&m.neutral(), &(SVector::from_element(0.2)));
     let q = m.assemble(&start, &[]).expect("it can be assembled");
     let v = m.project_velocity(&q, &SVector::from_fn(|k, _| 0.4 + 0.1 * k as f64)).expect("it moves");
-    check_second_derivative_forms("tied bodies", &m, &Rk4::step(0.02), (&q, &v));
+    check_second_derivative_quadratic_forms("tied bodies", &m, &Rk4::step(0.02), (&q, &v));
     // The state violates the constraints, so that the projection has a larger effect.
     let torn = m.integrate(&q, &SVector::from_element(0.03));
-    check_second_derivative_forms("torn bodies", &m, &Rk4::step(0.02), (&torn, &v.add_scalar(0.2)));
+    check_second_derivative_quadratic_forms("torn bodies", &m, &Rk4::step(0.02), (&torn, &v.add_scalar(0.2)));
 
     let m = Marble {};
     let q = m.integrate(&m.neutral(), &SVector::from([0.1, 0.0, 0.3, 0.2, -0.3, 0.4]));
     let v = m.project_velocity(&q, &SVector::from([0.3, 0.1, 0.0, 1.0, 2.0, 0.5])).expect("it rolls");
-    check_second_derivative_forms("marble", &m, &Rk4::step(0.02), (&q, &v));
+    check_second_derivative_quadratic_forms("marble", &m, &Rk4::step(0.02), (&q, &v));
 }

@@ -40,12 +40,12 @@ with_common_fields! {
 
     /// Rigid body about a fixed point, with Euler angles as coordinates.
     #[mechanism(gravity = -9.81 * z, derivatives)]
-    struct Angles {}
+    struct EulerAngleBody {}
 
     /// Rigid body about a fixed point. The generalized speeds are the components of its angular velocity in
     /// body axes.
     #[mechanism(gravity = -9.81 * z, derivatives, prepare, batch)]
-    struct Speeds {
+    struct EulerAngleBodyInSpeeds {
         #[speed(rate(psi) * sin(theta) * sin(phi) + rate(theta) * cos(phi))]
         wx: Speed,
         #[speed(dot(omega(top / ground), top.y))]
@@ -163,11 +163,11 @@ fn check_configuration_space<M, const NQ: usize, const NV: usize, const NU: usiz
 }
 
 /// Function that maps configuration and velocity before an integration step to those after it.
-type Step<'a, const NQ: usize, const NV: usize> =
+type StepMap<'a, const NQ: usize, const NV: usize> =
     &'a dyn Fn(&SVector<f64, NQ>, &SVector<f64, NV>) -> (SVector<f64, NQ>, SVector<f64, NV>);
 
 /// Checks the Jacobians of a step against differences of the step, in displacements and generalized speeds.
-fn check_steps<M, const NQ: usize, const NV: usize, const NU: usize>(
+fn check_step_jacobians<M, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     q: &SVector<f64, NQ>,
     v: &SVector<f64, NV>,
@@ -175,7 +175,7 @@ fn check_steps<M, const NQ: usize, const NV: usize, const NU: usize>(
     M: Derivatives<NQ, NV, NU, Scalar = f64> + linkwork::Scleronomic,
 {
     let u: SVector<f64, NU> = Random::new(9).random_vector(1.0);
-    let step_derivatives = |method: Step<'_, NQ, NV>| {
+    let step_derivatives = |method: StepMap<'_, NQ, NV>| {
         let there = method(q, v);
         let by_q = derivative_columns(|e| m.difference(&there.0, &method(&m.integrate(q, &e), v).0));
         let by_v = derivative_columns(|e| m.difference(&there.0, &method(q, &(v + e)).0));
@@ -210,8 +210,8 @@ fn check_steps<M, const NQ: usize, const NV: usize, const NU: usize>(
     assert_close_relative_to_largest("turning", turning.as_slice(), rate.as_slice(), 1e-4);
 }
 
-fn mechanism_with_speeds() -> Speeds {
-    Speeds { axial: 0.45 }
+fn sample_body_in_speeds() -> EulerAngleBodyInSpeeds {
+    EulerAngleBodyInSpeeds { axial: 0.45 }
 }
 
 fn euler_angle_start_state() -> (SVector<f64, 3>, SVector<f64, 3>) {
@@ -221,20 +221,20 @@ fn euler_angle_start_state() -> (SVector<f64, 3>, SVector<f64, 3>) {
 #[test]
 fn configuration_space_is_independent_of_speeds() {
     let (q, v) = euler_angle_start_state();
-    check_configuration_space(&mechanism_with_speeds(), &q);
-    check_steps(&mechanism_with_speeds(), &q, &(v * 0.3));
+    check_configuration_space(&sample_body_in_speeds(), &q);
+    check_step_jacobians(&sample_body_in_speeds(), &q, &(v * 0.3));
     let q = Random::new(5).random_configuration(&SatelliteInSpeeds {});
     check_configuration_space(&SatelliteInSpeeds {}, &q);
-    check_steps(&SatelliteInSpeeds {}, &q, &Random::new(6).random_vector(0.8));
+    check_step_jacobians(&SatelliteInSpeeds {}, &q, &Random::new(6).random_vector(0.8));
 }
 
 #[test]
 fn speeds_have_names_and_conversions() {
-    assert_eq!(Speeds::VELOCITIES, ["wx", "wy", "wz"]);
+    assert_eq!(EulerAngleBodyInSpeeds::VELOCITIES, ["wx", "wy", "wz"]);
     assert_eq!(SatelliteInSpeeds::VELOCITIES, ["ux", "uy", "uz", "wx", "wy", "wz", "hinge"]);
-    assert_eq!(Speeds::CONFIGURATION, ["psi", "theta", "phi"]);
+    assert_eq!(EulerAngleBodyInSpeeds::CONFIGURATION, ["psi", "theta", "phi"]);
     let (q, rates) = euler_angle_start_state();
-    let m = mechanism_with_speeds();
+    let m = sample_body_in_speeds();
     let u = m.speeds_of_rates(&q, &rates);
     assert_close("rates", m.rates_of_speeds(&q, &u).as_slice(), rates.as_slice(), 1e-14);
     // Mass matrix of the body about its fixed point, in body axes.
@@ -248,25 +248,25 @@ fn speeds_have_names_and_conversions() {
 #[test]
 fn frame_velocities_are_equal_in_speeds() {
     let (q, rates) = euler_angle_start_state();
-    let (plain, m) = (Angles { axial: 0.45 }, mechanism_with_speeds());
+    let (plain, m) = (EulerAngleBody { axial: 0.45 }, sample_body_in_speeds());
     let u = m.speeds_of_rates(&q, &rates);
     let (twist, expected) = (
-        m.frame_velocity(frame!(Speeds, "top"), &q, &u),
-        plain.frame_velocity(frame!(Angles, "top"), &q, &rates),
+        m.frame_velocity(frame!(EulerAngleBodyInSpeeds, "top"), &q, &u),
+        plain.frame_velocity(frame!(EulerAngleBody, "top"), &q, &rates),
     );
     assert_close("velocity", twist.as_slice(), expected.as_slice(), 1e-13);
-    let jacobian = m.frame_jacobian(frame!(Speeds, "top"), &q);
+    let jacobian = m.frame_jacobian(frame!(EulerAngleBodyInSpeeds, "top"), &q);
     assert_close("Jacobian", (jacobian * u).as_slice(), expected.as_slice(), 1e-13);
     let tau: SVector<f64, 3> = [0.2, -0.3, 0.5].into();
     let (a, du) = (
         plain.forward_dynamics(&q, &rates, &SVector::zeros()),
         m.forward_dynamics(&q, &u, &SVector::zeros()),
     );
-    let found = m.frame_acceleration(frame!(Speeds, "top"), &q, &u, &du);
+    let found = m.frame_acceleration(frame!(EulerAngleBodyInSpeeds, "top"), &q, &u, &du);
     assert_close(
         "acceleration",
         found.as_slice(),
-        plain.frame_acceleration(frame!(Angles, "top"), &q, &rates, &a).as_slice(),
+        plain.frame_acceleration(frame!(EulerAngleBody, "top"), &q, &rates, &a).as_slice(),
         1e-11,
     );
     let prepared = m.prepare();
@@ -284,7 +284,7 @@ fn end_state_transformed_to_velocities<S: linkwork::integrate::Method<f64>>(
     method: S,
 ) -> (SVector<f64, 3>, SVector<f64, 3>) {
     let (q, rates) = euler_angle_start_state();
-    let m = mechanism_with_speeds();
+    let m = sample_body_in_speeds();
     let run = simulate(&m).from(q, m.speeds_of_rates(&q, &rates)).duration(0.5).method(method);
     let end = run.finish().expect("it arrives");
     (end.q, m.rates_of_speeds(&end.q, &end.v))
@@ -294,7 +294,7 @@ fn end_state_transformed_to_velocities<S: linkwork::integrate::Method<f64>>(
 #[test]
 fn integrators_in_speeds_have_their_orders() {
     let (q, rates) = euler_angle_start_state();
-    let exact = state_after_duration(&Angles { axial: 0.45 }, &q, &rates, 0.5);
+    let exact = state_after_duration(&EulerAngleBody { axial: 0.45 }, &q, &rates, 0.5);
     let error_of_end =
         |(q, v): (SVector<f64, 3>, SVector<f64, 3>)| (q - exact.0).norm() + (v - exact.1).norm();
     let order_of_errors = |coarse: f64, fine: f64| (coarse / fine).log2();
@@ -328,7 +328,7 @@ fn integrators_in_speeds_have_their_orders() {
 #[test]
 fn batches_in_speeds_equal_single_states() {
     use linkwork::__private::{lane, lane_by_lane};
-    let m = mechanism_with_speeds();
+    let m = sample_body_in_speeds();
     let (q, rates) = euler_angle_start_state();
     let u = m.speeds_of_rates(&q, &rates);
     let speeds_times_lane_number = |k: usize| u * (1.0 + k as f64);

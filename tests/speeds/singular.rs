@@ -1,7 +1,7 @@
 //! Isolated configurations in which generalized speeds do not determine the rates of coordinates: integration
 //! is impossible there and returns an error.
 
-use super::{DiskInSpeeds, Speeds, mechanism_with_speeds};
+use super::{DiskInSpeeds, EulerAngleBodyInSpeeds, sample_body_in_speeds};
 use linkwork::discrete;
 use linkwork::nalgebra::SVector;
 use linkwork::prelude::*;
@@ -15,7 +15,7 @@ fn gimbal_lock_state() -> (SVector<f64, 3>, SVector<f64, 3>) {
 
 #[test]
 fn singular_speeds_yield_nonfinite_coordinate_rates() {
-    let (m, (q, u)) = (mechanism_with_speeds(), gimbal_lock_state());
+    let (m, (q, u)) = (sample_body_in_speeds(), gimbal_lock_state());
     assert!(m.rates_of_speeds(&q, &u).iter().any(|x| !x.is_finite()));
     assert!(m.forward_dynamics(&q, &u, &SVector::zeros()).iter().any(|x| !x.is_finite()));
     // Functions that do not need the rates are still correct: the inverse transformation, inertia and
@@ -30,9 +30,9 @@ fn singular_speeds_yield_nonfinite_coordinate_rates() {
 
 #[test]
 fn motions_from_singular_speeds_are_errors() {
-    let (m, (q, u)) = (mechanism_with_speeds(), gimbal_lock_state());
+    let (m, (q, u)) = (sample_body_in_speeds(), gimbal_lock_state());
     fn simulation_error_from_start<S: linkwork::integrate::Method<f64>>(
-        m: &Speeds,
+        m: &EulerAngleBodyInSpeeds,
         (q, u): (SVector<f64, 3>, SVector<f64, 3>),
         method: S,
     ) -> Error {

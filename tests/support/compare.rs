@@ -52,7 +52,7 @@ pub fn assert_same_dynamics<A, B, const NQ: usize, const NV: usize, const NA: us
             random.random_vector(0.5),
         ];
         let assert_close_entries = |what: &str, a: &[f64], b: &[f64]| assert_close(what, a, b, tolerance);
-        let check_same_entries = |what: &str, a: SVector<f64, NV>, b: SVector<f64, NV>| {
+        let assert_close_vectors = |what: &str, a: SVector<f64, NV>, b: SVector<f64, NV>| {
             assert_close_entries(what, a.as_slice(), b.as_slice())
         };
 
@@ -61,8 +61,8 @@ pub fn assert_same_dynamics<A, B, const NQ: usize, const NV: usize, const NA: us
             one.mass_matrix(0.0, &q).as_slice(),
             other.mass_matrix(0.0, &q).as_slice(),
         );
-        check_same_entries("bias forces", one.bias_forces(0.0, &q, &v), other.bias_forces(0.0, &q, &v));
-        check_same_entries(
+        assert_close_vectors("bias forces", one.bias_forces(0.0, &q, &v), other.bias_forces(0.0, &q, &v));
+        assert_close_vectors(
             "inverse dynamics",
             one.inverse_dynamics(0.0, &q, &v, &a),
             other.inverse_dynamics(0.0, &q, &v, &a),
@@ -70,19 +70,23 @@ pub fn assert_same_dynamics<A, B, const NQ: usize, const NV: usize, const NA: us
         // The condition of M enters: the comparison is of the forces that correspond to the difference of
         // accelerations.
         let acceleration = other.forward_dynamics(0.0, &q, &v, &tau);
-        check_same_entries("forward dynamics", one.inverse_dynamics(0.0, &q, &v, &acceleration), tau);
-        check_same_entries(
+        assert_close_vectors("forward dynamics", one.inverse_dynamics(0.0, &q, &v, &acceleration), tau);
+        assert_close_vectors(
             "forward dynamics",
             one.forward_dynamics(0.0, &q, &v, &one.inverse_dynamics(0.0, &q, &v, &a)),
             a,
         );
-        check_same_entries(
+        assert_close_vectors(
             "momentum",
             one.generalized_momentum(0.0, &q, &v),
             other.generalized_momentum(0.0, &q, &v),
         );
-        check_same_entries("momentum rate", one.momentum_rate(0.0, &q, &v), other.momentum_rate(0.0, &q, &v));
-        check_same_entries("tangent rate", one.tangent_rate(&dv, &v), other.tangent_rate(&dv, &v));
+        assert_close_vectors(
+            "momentum rate",
+            one.momentum_rate(0.0, &q, &v),
+            other.momentum_rate(0.0, &q, &v),
+        );
+        assert_close_vectors("tangent rate", one.tangent_rate(&dv, &v), other.tangent_rate(&dv, &v));
         assert_close_entries(
             "kinetic energy",
             &[one.kinetic_energy(0.0, &q, &v)],

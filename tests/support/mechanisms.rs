@@ -199,7 +199,7 @@ chained! {
 /// Mechanism with springs and dashpots on every kind of coordinate, and inputs on joints, bodies and points
 /// of bodies.
 #[mechanism(gravity = -g * y)]
-pub struct Workshop {
+pub struct CoordinateForceMechanism {
     /// Gravitational acceleration, m/s².
     pub g: f64,
     /// Mass of the arm, kg.
@@ -260,8 +260,8 @@ pub struct Workshop {
 }
 
 /// Returns a workshop in which all parameters have different values.
-pub fn sample_workshop() -> Workshop {
-    Workshop {
+pub fn sample_coordinate_force_mechanism() -> CoordinateForceMechanism {
+    CoordinateForceMechanism {
         g: 9.7,
         m: 1.7,
         l: 0.8,
@@ -303,7 +303,7 @@ pub struct Spacecraft {
 /// Bead on a hoop that is driven about the vertical.
 #[mechanism(gravity = -g * z, derivatives, sensitivities, prepare)]
 #[derive(Clone, Copy)]
-pub struct Hoop {
+pub struct BeadOnRotatingHoop {
     /// Gravitational acceleration, m/s².
     pub g: f64,
     /// Mass of the bead, kg.

@@ -121,7 +121,7 @@ fn spherical_pendulum_agrees_in_two_coordinate_charts() {
 /// Two particles whose coordinates are angles from the vertical. The lower one is placed relative to the
 /// upper one, as in a double pendulum.
 #[mechanism(gravity = -9.81 * y)]
-struct TwoParticles {
+struct DoublePendulumByAngles {
     first: Coordinate,
     second: Coordinate,
     #[particle(mass = 1, at = sin(first) * x - cos(first) * y)]
@@ -131,7 +131,7 @@ struct TwoParticles {
 }
 
 #[mechanism(gravity = -9.81 * y)]
-struct TwoPins {
+struct DoublePendulumByPins {
     #[body]
     upper_rod: Body,
     #[body]
@@ -148,7 +148,7 @@ struct TwoPins {
 
 #[test]
 fn double_pendulum_agrees_in_absolute_and_relative_angles() {
-    let (absolute, relative) = (TwoParticles {}, TwoPins {});
+    let (absolute, relative) = (DoublePendulumByAngles {}, DoublePendulumByPins {});
     let to_relative_angles = |a: &Vector2<f64>| Vector2::new(a[0], a[1] - a[0]);
     let (q, v) = (Vector2::new(0.8, -0.5), Vector2::new(0.3, 1.7));
     let (p, w) = (to_relative_angles(&q), to_relative_angles(&v));

@@ -7,7 +7,7 @@ use support::random::Random;
 
 /// Bead that slides on a helical wire, with its closed-form equation.
 #[mechanism(gravity = -9.81 * z)]
-struct Helix {
+struct BeadOnHelicalWire {
     a: f64,
     b: f64,
     s: Coordinate,
@@ -34,7 +34,7 @@ struct Helix {
 /// with `v (τ T + κ B)` (Frenet and Serret).
 #[test]
 fn helix_has_constant_curvature_and_torsion() {
-    let (m, mut random) = (Helix { a: 0.5, b: 0.2 }, Random::new(4));
+    let (m, mut random) = (BeadOnHelicalWire { a: 0.5, b: 0.2 }, Random::new(4));
     let sum = 0.5 * 0.5 + 0.2 * 0.2;
     for _ in 0..4 {
         let (q, v, a): (SVector<f64, 1>, _, _) =
@@ -53,7 +53,7 @@ fn helix_has_constant_curvature_and_torsion() {
 /// Point on the twisted cubic `(s, s², s³)` on a table that rotates with its own angle, and an ellipse as a
 /// function of another coordinate.
 #[mechanism]
-struct Cubic {
+struct PointOnTwistedCubic {
     #[body(mass = 1, inertia = sphere(1, 0.1))]
     table: Body,
     #[joint(ground -> table, about = z)]
@@ -83,17 +83,17 @@ fn curvature_of_cubics_and_ellipses_has_closed_forms() {
     for (s, e) in [(0.3_f64, 0.4_f64), (-0.8, 2.0), (1.2, -1.0)] {
         let q = [0.7, s, e].into();
         let (a, b) = (9.0 * s.powi(4) + 9.0 * s * s + 1.0, 9.0 * s.powi(4) + 4.0 * s * s + 1.0);
-        assert!((Cubic {}.bend(&q) - 2.0 * a.sqrt() / b.powf(1.5)).abs() < 1e-13);
-        assert!((Cubic {}.twist(&q) - 3.0 / a).abs() < 1e-13);
+        assert!((PointOnTwistedCubic {}.bend(&q) - 2.0 * a.sqrt() / b.powf(1.5)).abs() < 1e-13);
+        assert!((PointOnTwistedCubic {}.twist(&q) - 3.0 / a).abs() < 1e-13);
         let square = 9.0 * e.sin().powi(2) + 4.0 * e.cos().powi(2);
-        assert!((Cubic {}.ellipse(&q) - 6.0 / square.powf(1.5)).abs() < 1e-13);
-        assert!(Cubic {}.flat(&q).abs() < 1e-13);
+        assert!((PointOnTwistedCubic {}.ellipse(&q) - 6.0 / square.powf(1.5)).abs() < 1e-13);
+        assert!(PointOnTwistedCubic {}.flat(&q).abs() < 1e-13);
     }
 }
 
 /// Particle in distance, azimuth and elevation, with the local frames of these coordinates.
 #[mechanism]
-struct Radar {
+struct ParticleInRadarCoordinates {
     range: Coordinate,
     azimuth: Coordinate,
     elevation: Coordinate,
@@ -124,18 +124,18 @@ fn spherical_and_cylindrical_accelerations_have_textbook_terms() {
         let ([r, _, e], [dr, daz, de], [ddr, ddaz, dde]): ([f64; 3], [f64; 3], [f64; 3]) =
             (q.into(), v.into(), a.into());
         let (s, c) = (f64::sin(e), f64::cos(e));
-        assert!((Radar {}.along(&q) - SVector::from([r, 0.0, 0.0])).amax() < 1e-13);
+        assert!((ParticleInRadarCoordinates {}.along(&q) - SVector::from([r, 0.0, 0.0])).amax() < 1e-13);
         let expected = SVector::from([
             ddr - r * de * de - r * daz * daz * c * c,
             r * ddaz * c + 2.0 * dr * daz * c - 2.0 * r * daz * de * s,
             r * dde + 2.0 * dr * de + r * daz * daz * s * c,
         ]);
-        assert!((Radar {}.by_beam(&q, &v, &a) - expected).amax() < 1e-11);
+        assert!((ParticleInRadarCoordinates {}.by_beam(&q, &v, &a) - expected).amax() < 1e-11);
         let (rho, drho) = (r * c, dr * c - r * de * s);
         let ddrho = ddr * c - 2.0 * dr * de * s - r * dde * s - r * de * de * c;
         let ddz = ddr * s + 2.0 * dr * de * c + r * dde * c - r * de * de * s;
         let expected = SVector::from([ddrho - rho * daz * daz, rho * ddaz + 2.0 * drho * daz, ddz]);
-        assert!((Radar {}.by_bearing(&q, &v, &a) - expected).amax() < 1e-11);
+        assert!((ParticleInRadarCoordinates {}.by_bearing(&q, &v, &a) - expected).amax() < 1e-11);
     }
 }
 
@@ -290,7 +290,7 @@ fn cable_lengths_have_exact_derivatives() {
 
 /// Lever with a cable drum around its pin, and a weight that hangs from a rope over two pegs.
 #[mechanism(gravity = -9.81 * y)]
-struct Tackle {
+struct LeverWithDrumAndRope {
     drum: f64,
     stiffness: f64,
     slack: f64,
@@ -320,7 +320,7 @@ struct Tackle {
 
 #[test]
 fn elements_act_on_any_length_expression() {
-    let m = Tackle { drum: 0.25, stiffness: 40.0, slack: 5.0 };
+    let m = LeverWithDrumAndRope { drum: 0.25, stiffness: 40.0, slack: 5.0 };
     // The lever arm of a cable wound on the drum is the drum's radius, for any angle. Without contact, it is
     // the lever arm of the straight line.
     for angle in [1.4, 1.9, 2.3] {

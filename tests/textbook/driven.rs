@@ -171,7 +171,7 @@ fn forced_oscillator_has_the_closed_form_response() {
 /// Pendulum on a base with a prescribed vertical oscillation and a constant tilt (a quaternion), which the
 /// pendulum does not affect.
 #[mechanism(gravity = -g * y)]
-struct ShakenBase {
+struct PendulumOnShakenBase {
     g: f64,
     m: f64,
     l: f64,
@@ -193,7 +193,7 @@ struct ShakenBase {
 #[test]
 fn accelerated_base_acts_like_gravity() {
     let (g, m, l, amplitude, speed) = (9.81, 0.3, 0.5, 0.02, 30.0);
-    let base = ShakenBase { g, m, l, amplitude, speed };
+    let base = PendulumOnShakenBase { g, m, l, amplitude, speed };
     let tilt = 2.0 * 0.6_f64.atan2(0.8);
     for (t, angle) in [(0.0, 0.4), (0.013, -1.1), (0.2, 2.0)] {
         let (q, v) = (Vector1::new(angle), Vector1::new(1.3));

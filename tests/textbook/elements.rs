@@ -149,7 +149,7 @@ struct SpringsWithLinearForceLaw {
 }
 
 #[mechanism]
-struct LinearByStiffness {
+struct SpringsWithStiffness {
     k: f64,
     #[body(mass = 0.7)]
     slider: Body,
@@ -166,12 +166,12 @@ fn springs_by_force_and_by_energy_agree() {
     let (k, c, stiff, hard) = (20.0, 300.0, 5.0, 2.0);
     let (force, energy) = (DuffingByForce { k, c, stiff, hard }, DuffingByEnergy { k, c, stiff, hard });
     assert_same_dynamics(&force, &energy, 4, 1e-12);
-    assert_same_dynamics(&SpringsWithLinearForceLaw { k }, &LinearByStiffness { k }, 4, 1e-12);
+    assert_same_dynamics(&SpringsWithLinearForceLaw { k }, &SpringsWithStiffness { k }, 4, 1e-12);
 }
 
 /// Cart between buffers that act beyond a gap.
 #[mechanism]
-struct Buffers {
+struct CartBetweenBuffers {
     k: f64,
     gap: f64,
     #[body(mass = 1)]
@@ -187,7 +187,7 @@ struct Buffers {
 #[test]
 fn elastic_buffers_act_only_beyond_their_gap() {
     let (k, gap) = (1000.0, 0.5);
-    let cart = Buffers { k, gap };
+    let cart = CartBetweenBuffers { k, gap };
     let force_at_position = |x: f64| cart.bias_forces(&Vector1::new(x), &Vector1::zeros())[0];
     let cases = [(0.3, 0.0), (-0.4, 0.0), (0.5, 0.0), (-0.5, 0.0), (0.7, 200.0), (-0.6, -100.0)];
     for (x, expected) in cases {
@@ -392,7 +392,7 @@ fn gravity_of_coincident_particles_is_not_finite() {
 
 /// Mechanism with force elements of every class: conservative, dissipative, control, disturbance, inertial.
 #[mechanism(gravity = -9.81 * y)]
-struct Workbench {
+struct MechanismOfAllForceClasses {
     wind: f64,
     #[body(mass = 2, com = 0.2 * x, inertia = rod(2, 0.4, x))]
     arm: Body,
@@ -430,7 +430,7 @@ struct Workbench {
 /// differences along the motion.
 #[test]
 fn power_balance_holds_along_motion() {
-    let m = Workbench { wind: 0.8 };
+    let m = MechanismOfAllForceClasses { wind: 0.8 };
     let mut random = Random::new(3);
     for _ in 0..20 {
         let (q, v, u): (Vector2<f64>, Vector2<f64>, Vector2<f64>) =
@@ -448,7 +448,7 @@ fn power_balance_holds_along_motion() {
         let power = m.control_power(&q, &v, &u) + m.disturbance_power(&q, &v) - m.dissipated_power(&q, &v);
         assert_close("power", &[rate], &[power], 1e-8);
         assert!(m.dissipated_power(&q, &v) > 0.0, "what dissipates takes energy out");
-        let gust = m.frame_velocity(frame!(Workbench, "tip"), &q, &v)[0] * 0.8;
+        let gust = m.frame_velocity(frame!(MechanismOfAllForceClasses, "tip"), &q, &v)[0] * 0.8;
         assert_close("disturbance", &[m.disturbance_power(&q, &v)], &[gust], EXACT);
     }
 }

@@ -7,7 +7,7 @@ use support::random::Random;
 
 /// Carrier in space with a wheel on a skew axle.
 #[mechanism(gravity = -9.81 * z, derivatives)]
-struct Carrier {
+struct CarrierWithSkewWheel {
     mass: f64,
     #[body(mass = 3, com = 0.1 * x - 0.2 * y, inertia = [[0.3, 0.02, 0], [0.02, 0.4, 0.01], [0, 0.01, 0.5]])]
     hull: Body,
@@ -65,12 +65,12 @@ struct Carrier {
 
 #[test]
 fn matrix_expressions_equal_vector_expressions() {
-    let (m, mut random) = (Carrier { mass: 1.7 }, Random::new(31));
+    let (m, mut random) = (CarrierWithSkewWheel { mass: 1.7 }, Random::new(31));
     for _ in 0..4 {
         let (q, v): (SVector<f64, 8>, SVector<f64, 7>) =
             (random.random_configuration(&m), random.random_vector(2.0));
-        let hull = m.frame_placement(frame!(Carrier, "hull"), &q).rotation;
-        let wheel = m.frame_placement(frame!(Carrier, "wheel"), &q).rotation;
+        let hull = m.frame_placement(frame!(CarrierWithSkewWheel, "hull"), &q).rotation;
+        let wheel = m.frame_placement(frame!(CarrierWithSkewWheel, "wheel"), &q).rotation;
         // A rotation has the same components in both of its frames.
         assert!((m.relative(&q) - (hull.inverse() * wheel).matrix()).amax() < 1e-14);
         let askew = wheel * Rotation3::from_axis_angle(&Vector3::x_axis(), 0.3);
@@ -98,7 +98,7 @@ fn matrix_expressions_equal_vector_expressions() {
         // The moment of inertia of all bodies about z is twice their energy of unit rotation about it.
         let z = Vector3::z();
         let energy_of_rotation = |w: Vector3<f64>| {
-            let at = m.frame_placement(frame!(Carrier, "hull"), &q);
+            let at = m.frame_placement(frame!(CarrierWithSkewWheel, "hull"), &q);
             let (w, v) = (hull.inverse() * w, hull.inverse() * w.cross(&at.translation.vector));
             m.kinetic_energy(&q, &SVector::from([v.x, v.y, v.z, w.x, w.y, w.z, 0.0]))
         };

@@ -68,7 +68,7 @@ fn wheel_rotates_about_its_contact_point() {
 
 /// Two rotations about skew axes, at a distance along z.
 #[mechanism]
-struct Cylindroid {
+struct RotationsAboutSkewAxes {
     d: f64,
     #[body(mass = 1, inertia = sphere(1, 0.1))]
     first: Body,
@@ -90,7 +90,7 @@ struct Cylindroid {
 /// pitch `−d w₁ w₂ / (w₁² + w₂²)` (Ball, *A Treatise on the Theory of Screws*, 1900, § 13).
 #[test]
 fn two_rotations_form_a_screw_of_the_cylindroid() {
-    let (m, q) = (Cylindroid { d: 0.4 }, SVector::zeros());
+    let (m, q) = (RotationsAboutSkewAxes { d: 0.4 }, SVector::zeros());
     for (w1, w2) in [(1.0, 2.0), (-3.0, 0.5), (0.7, -0.7)] {
         let (v, square) = ([w1, w2].into(), w1 * w1 + w2 * w2);
         assert!((m.axis(&q, &v) - SVector::from([0.0, 0.0, 0.4 * w2 * w2 / square])).amax() < 1e-14);
@@ -156,7 +156,7 @@ fn impulse_at_the_centre_of_percussion_leaves_the_grip_at_rest() {
 
 /// Carrier with an arm, a bead, and a torque on the carrier.
 #[mechanism(derivatives)]
-struct Carrier {
+struct CarrierWithArmAndBead {
     mass: f64,
     #[body(mass = 3, com = 0.1 * x - 0.2 * y, inertia = [[0.3, 0.02, 0], [0.02, 0.4, 0.01], [0, 0.01, 0.5]])]
     hull: Body,
@@ -200,7 +200,7 @@ struct Carrier {
 /// forces and torques. In a rotating frame, the rate of a vector is smaller by `ω × h` (transport theorem).
 #[test]
 fn eulers_laws_hold_for_a_set_of_bodies() {
-    let (m, mut random) = (Carrier { mass: 1.7 }, Random::new(3));
+    let (m, mut random) = (CarrierWithArmAndBead { mass: 1.7 }, Random::new(3));
     for _ in 0..5 {
         let (q, v): (SVector<f64, 8>, SVector<f64, 7>) =
             (random.random_configuration(&m), random.random_vector(2.0));
@@ -212,12 +212,12 @@ fn eulers_laws_hold_for_a_set_of_bodies() {
         assert!((m.energy(&q, &v) - m.kinetic_energy(&q, &v)).abs() < 1e-12);
         assert!((m.product(&q) - m.parts(&q)).abs() < 1e-13);
         let a = m.forward_dynamics(&q, &v, &m.generalized_forces(&q, &u));
-        let hull = m.frame_placement(frame!(Carrier, "hull"), &q);
+        let hull = m.frame_placement(frame!(CarrierWithArmAndBead, "hull"), &q);
         let torque = hull.rotation * linkwork::nalgebra::Vector3::z() * u[0];
         assert!((m.torque(&q, &v, &a) - torque).amax() < 1e-11);
         assert!((m.transported(&q, &v, &a) - torque).amax() < 1e-11);
         assert!(m.force(&q, &v, &a).amax() < 1e-11);
-        let (arm, bead) = (frame!(Carrier, "arm"), frame!(Carrier, "bead"));
+        let (arm, bead) = (frame!(CarrierWithArmAndBead, "arm"), frame!(CarrierWithArmAndBead, "bead"));
         let arm = m.frame_placement(arm, &q) * linkwork::nalgebra::Point3::new(0.0, 0.0, 0.2);
         let bead = m.frame_placement(bead, &q).translation.vector;
         let both = (arm.coords * 1.7 + bead * 0.5) / 2.2 - hull.translation.vector;
@@ -249,10 +249,10 @@ with_common_fields! {
         contact: Rolling,
     }
 
-    /// The wheel of [`RollingWheel`] with its lowest point given in the axes of the fork: this point is on the
-    /// ground, and at rest.
+    /// The wheel of [`RollingWheel`] with its lowest point given in the axes of the fork: this point is on
+    /// the ground, and at rest.
     #[mechanism(gravity = -9.81 * z)]
-    struct Written {
+    struct WheelByPointConstraints {
         #[constraint(dot(r(wheel.at(-radius * fork.z) / ground), z))]
         height: Holonomic,
         #[constraint(dot(v(wheel.at(-radius * fork.z) / ground / ground), x))]
@@ -273,7 +273,7 @@ with_common_fields! {
 #[test]
 fn wheel_rolls_on_a_point_in_fork_axes() {
     let (pair, written, mut random) =
-        (RollingWheel { radius: 0.4 }, Written { radius: 0.4 }, Random::new(21));
+        (RollingWheel { radius: 0.4 }, WheelByPointConstraints { radius: 0.4 }, Random::new(21));
     for _ in 0..4 {
         let mut q: SVector<f64, 6> = random.random_vector(0.8);
         q[2] = 0.4 * q[4].cos();

@@ -125,7 +125,7 @@ fn heavy_top_agrees_in_two_coordinate_charts() {
 }
 
 #[mechanism]
-struct Words {
+struct ArmWithVectorFunctions {
     #[body(mass = 1, inertia = diagonal(1, 1, 1))]
     arm: Body,
     #[joint(ground -> arm, about = z)]
@@ -150,7 +150,7 @@ struct Words {
 
 #[test]
 fn vector_functions_have_their_documented_values() {
-    let words = Words {};
+    let words = ArmWithVectorFunctions {};
     for angle in [-1.2, 0.4, FRAC_PI_2, 2.0_f64] {
         let (q, v) = (Vector1::new(angle), Vector1::new(0.7));
         assert_close("angle", &[words.apart(&q), words.directed(&q)], &[angle.abs(), angle], EXACT);

@@ -182,7 +182,7 @@ fn exponents_of_unit(unit: &str) -> [i32; 3] {
     let mut sum = [0; 3];
     let (mut sign, mut inside) = (1, 1);
     let mut word = String::new();
-    let mut end = |word: &mut String, sign: i32| {
+    let mut add_exponents_of_word = |word: &mut String, sign: i32| {
         let power = if word.ends_with('²') {
             2
         } else if word.ends_with('³') {
@@ -205,7 +205,7 @@ fn exponents_of_unit(unit: &str) -> [i32; 3] {
     for c in unit.chars() {
         match c {
             '/' | '·' | '(' | ')' => {
-                end(&mut word, sign);
+                add_exponents_of_word(&mut word, sign);
                 match c {
                     '(' => inside = sign,
                     ')' => inside = 1,
@@ -215,7 +215,7 @@ fn exponents_of_unit(unit: &str) -> [i32; 3] {
             _ => word.push(c),
         }
     }
-    end(&mut word, sign);
+    add_exponents_of_word(&mut word, sign);
     sum
 }
 

@@ -2,7 +2,7 @@
 
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
-use linkwork_compiler::{read_source, resolve::build_model};
+use linkwork_compiler::{parse_source_and_import, resolve::build_model};
 use std::path::Path;
 use support::random::Random;
 
@@ -66,11 +66,15 @@ fn machine_source(more: &str) -> String {
 /// Returns the error messages for a machine with an additional element; each message is one string.
 fn messages_for_element(more: &str) -> Vec<String> {
     let mut cx = Diagnostics::new();
-    let source =
-        read_source("".parse().unwrap(), machine_source(more).parse().unwrap(), Path::new(""), &mut cx)
-            .unwrap();
+    let source = parse_source_and_import(
+        "".parse().unwrap(),
+        machine_source(more).parse().unwrap(),
+        Path::new(""),
+        &mut cx,
+    )
+    .unwrap();
     build_model(&source.mechanism.description, &Graph::new(), &mut cx);
-    cx.messages()
+    cx.full_message_texts()
 }
 
 /// Returns a random integer from zero to `n − 1`.
@@ -78,7 +82,7 @@ fn random_index(n: usize, random: &mut Random) -> usize {
     ((random.uniform_number(0.5) + 0.5) * n as f64) as usize % n
 }
 
-fn multiply_dimension(a: Dimension, b: Dimension, power: i32) -> Dimension {
+fn multiply_by_dimension_power(a: Dimension, b: Dimension, power: i32) -> Dimension {
     std::array::from_fn(|k| a[k] + power * b[k])
 }
 
@@ -91,7 +95,7 @@ fn factor_of_dimension(mut by: Dimension) -> String {
     let mut text = String::new();
     for (k, (name, unit)) in PARAMETERS.iter().take(3).enumerate() {
         let power = by[k] / unit[k];
-        by = multiply_dimension(by, *unit, -power);
+        by = multiply_by_dimension_power(by, *unit, -power);
         let sign = if power > 0 { '*' } else { '/' };
         (0..power.abs()).for_each(|_| text.push_str(&format!(" {sign} {name}")));
     }
@@ -100,7 +104,7 @@ fn factor_of_dimension(mut by: Dimension) -> String {
 }
 
 /// Returns a product of this dimension that contains a parameter, so that its numbers are dimensionless.
-fn anchored_product(dimension: Dimension, depth: usize, random: &mut Random) -> String {
+fn random_product_with_parameter(dimension: Dimension, depth: usize, random: &mut Random) -> String {
     let (mut text, mut has) = (String::from("n"), PLAIN);
     for _ in 0..random_index(3, random) {
         let (name, unit) = match random_index(4, random) {
@@ -110,16 +114,16 @@ fn anchored_product(dimension: Dimension, depth: usize, random: &mut Random) -> 
         };
         let below = random_index(3, random) == 0;
         text = format!("{text} {} {name}", if below { '/' } else { '*' });
-        has = multiply_dimension(has, unit, if below { -1 } else { 1 });
+        has = multiply_by_dimension_power(has, unit, if below { -1 } else { 1 });
     }
     if random_index(2, random) == 0 {
         text = format!("{} * {text}", pick_randomly(&["0.6", "0.5", "9.81", "40", "2", "pi"], random));
     }
-    text.push_str(&factor_of_dimension(multiply_dimension(dimension, has, -1)));
+    text.push_str(&factor_of_dimension(multiply_by_dimension_power(dimension, has, -1)));
     match depth.checked_sub(1).map(|depth| (depth, random_index(6, random))) {
         Some((depth, 0)) => format!("{text} * sin({})", random_sum_text(PLAIN, depth, random)),
         Some((depth, 1)) => {
-            let square = multiply_dimension(dimension, dimension, 1);
+            let square = multiply_by_dimension_power(dimension, dimension, 1);
             format!("sqrt({})", random_sum_text(square, depth, random))
         }
         Some((depth, 2)) => format!("max({text}, {})", random_sum_text(dimension, depth, random)),
@@ -137,15 +141,15 @@ fn random_term(dimension: Dimension, depth: usize, random: &mut Random) -> Strin
         1 => format!("30 * {}", pick_randomly(&with_coefficient, random).0),
         2 => match with_coefficient.iter().find(|(_, unit)| *unit == dimension) {
             Some((name, _)) => name.to_string(),
-            None => anchored_product(dimension, depth, random),
+            None => random_product_with_parameter(dimension, depth, random),
         },
-        _ => anchored_product(dimension, depth, random),
+        _ => random_product_with_parameter(dimension, depth, random),
     }
 }
 
 /// Returns the text of a random sum of terms of the given dimension; one term contains a parameter.
 fn random_sum_text(dimension: Dimension, depth: usize, random: &mut Random) -> String {
-    let mut text = anchored_product(dimension, depth, random);
+    let mut text = random_product_with_parameter(dimension, depth, random);
     for _ in 0..random_index(3, random) {
         let sign = if random_index(2, random) == 0 { '+' } else { '-' };
         text = match random_index(2, random) {
@@ -170,13 +174,16 @@ fn random_other_dimension(dimension: Dimension, random: &mut Random) -> Dimensio
 fn sum_with_wrong_unit(dimension: Dimension, random: &mut Random) -> String {
     let (good, bad) = (
         random_sum_text(dimension, 1, random),
-        anchored_product(random_other_dimension(dimension, random), 1, random),
+        random_product_with_parameter(random_other_dimension(dimension, random), 1, random),
     );
     match random_index(6, random) {
         0 => format!("{bad} + {good}"),
         1 => format!("{good} - {bad}"),
         2 => {
-            format!("({good}) * cos({})", anchored_product(random_other_dimension(PLAIN, random), 1, random))
+            format!(
+                "({good}) * cos({})",
+                random_product_with_parameter(random_other_dimension(PLAIN, random), 1, random)
+            )
         }
         3 => format!("min({good}, {bad})"),
         4 => {
@@ -249,7 +256,7 @@ fn uses_with_other_units_are_rejected() {
         let dimension = random_other_dimension(place, &mut random);
         let e = match INPUTS.iter().find(|(_, unit)| *unit != place && random_index(4, &mut random) == 0) {
             Some((name, _)) => name.to_string(),
-            None => anchored_product(dimension, 2, &mut random),
+            None => random_product_with_parameter(dimension, 2, &mut random),
         };
         let element = if kind == "rail" { "Force" } else { "Torque" };
         let more = format!("#[acts(on = {kind}, value = {e})] o: {element}");

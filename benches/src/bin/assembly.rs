@@ -70,7 +70,7 @@ fn print_routine_tables(flags: &str) -> Result<(), String> {
     println!("| function | bytes | instructions | stack, bytes | calls |");
     println!("| --- | ---: | ---: | ---: | --- |");
     let mut generated: Vec<(String, &String)> =
-        generated.into_iter().map(|symbol| (name_of_symbol(symbol), symbol)).collect();
+        generated.into_iter().map(|symbol| (display_name_of_symbol(symbol), symbol)).collect();
     generated.sort();
     for (title, symbol) in generated {
         let parts = reachable_functions(symbol, &routines);
@@ -122,7 +122,7 @@ fn mechanism_and_function_names(symbol: &str) -> Option<(String, String)> {
     is_module.then(|| (mechanism.to_string(), function.to_string()))
 }
 
-fn name_of_symbol(symbol: &str) -> String {
+fn display_name_of_symbol(symbol: &str) -> String {
     mechanism_and_function_names(symbol)
         .map_or_else(|| last_path_segment(symbol), |(mechanism, function)| format!("{mechanism}, {function}"))
 }
@@ -161,8 +161,8 @@ fn build_package(flags: &str) -> Result<(String, Vec<u8>), String> {
     if !status.success() {
         return Err("the package does not compile".to_string());
     }
-    let error_message = |error: std::io::Error| error.to_string();
-    Ok((fs::read_to_string(text).map_err(error_message)?, fs::read(object).map_err(error_message)?))
+    let io_error_text = |error: std::io::Error| error.to_string();
+    Ok((fs::read_to_string(text).map_err(io_error_text)?, fs::read(object).map_err(io_error_text)?))
 }
 
 /// Returns the size of every function in an object file, bytes.

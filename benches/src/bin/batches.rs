@@ -67,9 +67,9 @@ where
     M: Batch<NQ, NV, NU, Scalar = f64>,
 {
     let mut random = Random::new(1);
-    let mut vector = |bound: f64| SVector::<f64, NV>::from_fn(|_, _| random.uniform_within(bound));
-    let q: Vec<_> = (0..STATES).map(|_| m.integrate(&m.neutral(), &vector(2.0))).collect();
-    let v: Vec<_> = (0..STATES).map(|_| vector(2.0)).collect();
+    let mut random_vector = |bound: f64| SVector::<f64, NV>::from_fn(|_, _| random.uniform_within(bound));
+    let q: Vec<_> = (0..STATES).map(|_| m.integrate(&m.neutral(), &random_vector(2.0))).collect();
+    let v: Vec<_> = (0..STATES).map(|_| random_vector(2.0)).collect();
     let q: ScalarAndPackedStates<NQ> = (q.clone(), pack_into_lanes(&q), pack_into_lanes(&q));
     let v: ScalarAndPackedStates<NV> = (v.clone(), pack_into_lanes(&v), pack_into_lanes(&v));
     let (m4, m8) = (m.lanes::<4>(), m.lanes::<8>());
@@ -116,11 +116,12 @@ where
     M: Batch<N, N, NU, Scalar = f64>,
 {
     let mut random = Random::new(2);
-    let mut numbers = || (0..N * ARRAYS).map(|_| random.uniform_within(2.0)).collect::<Vec<f64>>();
-    let (q, v, a) = (numbers(), numbers(), numbers());
+    let mut random_numbers_for_arrays =
+        || (0..N * ARRAYS).map(|_| random.uniform_within(2.0)).collect::<Vec<f64>>();
+    let (q, v, a) = (random_numbers_for_arrays(), random_numbers_for_arrays(), random_numbers_for_arrays());
     let (mut matrices, mut vectors) = (vec![0.0; N * N * ARRAYS], vec![0.0; N * ARRAYS]);
     let m = m.lanes::<8>();
-    let mut row = |text: &str, call: &mut dyn FnMut(&mut [f64], &mut [f64])| {
+    let mut measure_and_print_row = |text: &str, call: &mut dyn FnMut(&mut [f64], &mut [f64])| {
         let mut best = Duration::MAX;
         let start = Instant::now();
         while start.elapsed() < BUDGET {
@@ -131,11 +132,13 @@ where
         println!("| {name} | {text} | {:.1} |", best.as_secs_f64() * 1e9 / ARRAYS as f64);
     };
     let fits = "arrays have the lengths of the states";
-    row("mass matrix", &mut |mass, _| m.mass_matrix_all(0.0, black_box(&q), mass).expect(fits));
-    row("inverse dynamics", &mut |_, tau| {
+    measure_and_print_row("mass matrix", &mut |mass, _| {
+        m.mass_matrix_all(0.0, black_box(&q), mass).expect(fits)
+    });
+    measure_and_print_row("inverse dynamics", &mut |_, tau| {
         m.inverse_dynamics_all(0.0, black_box(&q), &v, &a, tau).expect(fits)
     });
-    row("forward dynamics", &mut |_, a_out| {
+    measure_and_print_row("forward dynamics", &mut |_, a_out| {
         m.forward_dynamics_all(0.0, black_box(&q), &v, &a, a_out).expect(fits);
     });
 }

@@ -5,10 +5,10 @@
 //! last columns measure rustc on the expanded code in cargo's dev profile, up to the metadata of a library:
 //! processor time, and peak memory. `expansion FIRST [LAST]` prints the lines of some mechanisms, by number.
 
-use linkwork_benches::chains::{Source, chain_source};
+use linkwork_benches::chains::{MechanismSourceText, chain_source};
 use linkwork_benches::checked::{CompiledRuntime, measure_rustc_check};
 use linkwork_benches::elements::{arm_with_springs_source, particle_chain_source};
-use linkwork_benches::operations::Operations;
+use linkwork_benches::operations::CompiledMechanism;
 use linkwork_compiler::expand;
 use proc_macro2::TokenStream;
 use std::error::Error;
@@ -49,11 +49,11 @@ const PLACED: [usize; 5] = [4, 8, 16, 32, 64];
 const DIFFERENTIATED: [usize; 3] = [16, 32, 64];
 
 /// Returns the name, the target time and the source text of every measured mechanism.
-fn mechanism_sources() -> Vec<(String, &'static str, Source)> {
+fn mechanism_sources() -> Vec<(String, &'static str, MechanismSourceText)> {
     let mechanism_entry_with_gravity = |name: &str, goal, item: &str| {
         let arguments = "gravity = -g * y".to_string();
         let item = item.to_string();
-        (name.to_string(), goal, Source { arguments, item })
+        (name.to_string(), goal, MechanismSourceText { arguments, item })
     };
     let mut list = vec![
         mechanism_entry_with_gravity("CartPole", "20 ms", CART_POLE),
@@ -62,7 +62,7 @@ fn mechanism_sources() -> Vec<(String, &'static str, Source)> {
     for (name, options, goal) in ROBOTS {
         let arguments = format!("urdf = \"../models/urdf/{name}.urdf\"{options}");
         let item = "pub struct Robot;".to_string();
-        list.push((name.to_string(), goal, Source { arguments, item }));
+        list.push((name.to_string(), goal, MechanismSourceText { arguments, item }));
     }
     for (symbolic, what) in [(false, "numbers"), (true, "parameters")] {
         list.extend(
@@ -138,7 +138,7 @@ fn print_mechanism_table(first: usize, last: usize) -> Result<(), Box<dyn Error>
 fn format_mechanism_line(
     name: &str,
     goal: &str,
-    source: &Source,
+    source: &MechanismSourceText,
     library: &CompiledRuntime,
 ) -> Result<String, Box<dyn Error>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -153,13 +153,14 @@ fn format_mechanism_line(
     let start = Instant::now();
     for _ in 0..REPEATS {
         whole = whole.min(elapsed_time_of(|| expand(arguments.clone(), item.clone(), folder)));
-        derivation = derivation.min(elapsed_time_of(|| Operations::compile(&source.arguments, &source.item)));
+        derivation = derivation
+            .min(elapsed_time_of(|| CompiledMechanism::compile_mechanism(&source.arguments, &source.item)));
         if start.elapsed() > PATIENCE {
             break;
         }
     }
     let duration_in_milliseconds = |time: Duration| time.as_secs_f64() * 1e3;
-    let derived = Operations::compile(&source.arguments, &source.item);
+    let derived = CompiledMechanism::compile_mechanism(&source.arguments, &source.item);
     let operations_of_function = |name: &str| derived.operation_counts_of_function(name).operations;
     Ok(format!(
         "| {name} | {} | {:.1} | {:.1} | {memory} | {:.0} | {} | {} | {} | {} | {:.1} | {:.0} | {goal} |",

@@ -39,7 +39,7 @@ fn main() -> Result<(), Error> {
 }
 
 /// A sample state: configuration, velocity, and acceleration or force.
-type Sample<const NQ: usize, const NV: usize> = (SVector<f64, NQ>, SVector<f64, NV>, SVector<f64, NV>);
+type SampleState<const NQ: usize, const NV: usize> = (SVector<f64, NQ>, SVector<f64, NV>, SVector<f64, NV>);
 
 /// Prints the rows of a robot: each function loaded at run time and compiled in.
 fn print_robot_timing_rows<M, const NQ: usize, const NV: usize, const NU: usize>(
@@ -57,32 +57,33 @@ where
     let path = format!("{}/../models/urdf/{file}.urdf", env!("CARGO_MANIFEST_DIR"));
     let robot = Loader::file(path).options(options).options("derivatives").load()?;
     let mut random = Random::new(1);
-    let mut vector = |bound: f64| SVector::<f64, NV>::from_fn(|_, _| random.uniform_within(bound));
-    let mut state = || (own.integrate(&own.neutral(), &vector(1.0)), vector(2.0), vector(2.0));
-    let states: Vec<Sample<NQ, NV>> = (0..STATES).map(|_| state()).collect();
+    let mut random_vector = |bound: f64| SVector::<f64, NV>::from_fn(|_, _| random.uniform_within(bound));
+    let mut random_sample_state =
+        || (own.integrate(&own.neutral(), &random_vector(1.0)), random_vector(2.0), random_vector(2.0));
+    let states: Vec<SampleState<NQ, NV>> = (0..STATES).map(|_| random_sample_state()).collect();
     let comparison = LoadedRobotComparison { name, robot: &robot, states: &states };
-    comparison.print_function_row(
+    comparison.measure_and_print_function_row(
         "inverse_dynamics",
         |(q, v, a)| own.inverse_dynamics(0.0, q, v, a),
         |x| vec![x.as_slice()],
     )?;
-    comparison.print_function_row(
+    comparison.measure_and_print_function_row(
         "mass_matrix",
         |(q, ..)| own.mass_matrix(0.0, q),
         |x| vec![x.as_slice()],
     )?;
-    comparison.print_function_row(
+    comparison.measure_and_print_function_row(
         "forward_dynamics",
         |(q, v, tau)| own.forward_dynamics(0.0, q, v, tau),
         |x| vec![x.as_slice()],
     )?;
-    comparison.print_function_row(
+    comparison.measure_and_print_function_row(
         "inverse_dynamics_derivatives",
         |(q, v, a)| own.inverse_dynamics_derivatives(0.0, q, v, a),
         |(by_q, by_v)| vec![by_q.as_slice(), by_v.as_slice()],
     )?;
     type DerivativeMatrices<const N: usize> = (SMatrix<f64, N, N>, SMatrix<f64, N, N>, SMatrix<f64, N, N>);
-    comparison.print_function_row(
+    comparison.measure_and_print_function_row(
         "forward_dynamics_derivatives",
         |(q, v, tau)| own.forward_dynamics_derivatives(0.0, q, v, tau),
         |(by_q, by_v, by_tau): &DerivativeMatrices<NV>| {
@@ -95,15 +96,15 @@ where
 struct LoadedRobotComparison<'a, const NQ: usize, const NV: usize> {
     name: &'a str,
     robot: &'a Robot,
-    states: &'a [Sample<NQ, NV>],
+    states: &'a [SampleState<NQ, NV>],
 }
 
 impl<const NQ: usize, const NV: usize> LoadedRobotComparison<'_, NQ, NV> {
     /// Measures one function both loaded at run time and compiled into the program, and prints its row.
-    fn print_function_row<T>(
+    fn measure_and_print_function_row<T>(
         &self,
         function: &str,
-        own: impl Fn(&Sample<NQ, NV>) -> T,
+        own: impl Fn(&SampleState<NQ, NV>) -> T,
         lists: impl for<'t> Fn(&'t T) -> Vec<&'t [f64]>,
     ) -> Result<(), Error> {
         let f = self.robot.function(function)?;
@@ -135,7 +136,7 @@ impl<const NQ: usize, const NV: usize> LoadedRobotComparison<'_, NQ, NV> {
     fn call_loaded_function(
         &self,
         (f, count): (&Function, usize),
-        (q, v, a): &Sample<NQ, NV>,
+        (q, v, a): &SampleState<NQ, NV>,
         out: &mut [f64],
     ) -> Result<(), Error> {
         let all = [q.as_slice(), v.as_slice(), a.as_slice()];

@@ -45,14 +45,14 @@ fn measure_pair(pair: &mut ImplementationPair) -> (f64, f64) {
     let (mut generated, mut generic) = (Duration::MAX, Duration::MAX);
     let start = Instant::now();
     while start.elapsed() < BUDGET {
-        generated = generated.min(time_batch(&mut pair.generated));
-        generic = generic.min(time_batch(&mut pair.generic));
+        generated = generated.min(time_for_all_states(&mut pair.generated));
+        generic = generic.min(time_for_all_states(&mut pair.generic));
     }
     let nanoseconds_per_state = |time: Duration| time.as_secs_f64() * 1e9 / STATES as f64;
     (nanoseconds_per_state(generated), nanoseconds_per_state(generic))
 }
 
-fn time_batch(f: &mut dyn FnMut(usize)) -> Duration {
+fn time_for_all_states(f: &mut dyn FnMut(usize)) -> Duration {
     let start = Instant::now();
     for k in 0..STATES {
         f(k);

@@ -69,8 +69,8 @@ where
     M: Batch<NQ, NV, NU, Scalar = f64>,
 {
     let mut random = Random::new(1);
-    let mut vector = || SVector::<f64, NV>::from_fn(|_, _| random.uniform_within(2.0));
-    (m.integrate(&m.neutral(), &vector()), vector())
+    let mut random_vector = || SVector::<f64, NV>::from_fn(|_, _| random.uniform_within(2.0));
+    (m.integrate(&m.neutral(), &random_vector()), random_vector())
 }
 
 fn print_dynamics_stack<M, const NQ: usize, const NV: usize, const NU: usize>(name: &str, m: &M)

@@ -5,7 +5,7 @@ use linkwork::nalgebra::SMatrix;
 use linkwork::prelude::*;
 use linkwork::{Derivatives, SecondDerivatives, discrete};
 use linkwork_benches::generic::{Model, Options};
-use linkwork_benches::peers::contender::{Contender, Function, Owner};
+use linkwork_benches::peers::contender::{Contender, ContenderOwner, MeasuredFunction};
 use linkwork_benches::peers::library::{self, StateRows};
 use linkwork_benches::peers::own::{GeneratedContender, MechanismCall, ToNumberList};
 use linkwork_benches::peers::turns::{TOLERANCE, measure_in_turns, remove_disagreeing_contenders};
@@ -41,9 +41,9 @@ where
 }
 
 /// Blocks in a column, as a list of matrix columns.
-struct MatrixBlocks<const N: usize>([[SMatrix<f64, N, N>; 2]; 3]);
+struct StepJacobianBlocks<const N: usize>([[SMatrix<f64, N, N>; 2]; 3]);
 
-impl<const N: usize> ToNumberList for MatrixBlocks<N> {
+impl<const N: usize> ToNumberList for StepJacobianBlocks<N> {
     fn flatten(&self) -> Vec<f64> {
         let columns = self.0.iter().flat_map(|[q, v]| q.column_iter().zip(v.column_iter()));
         columns.flat_map(|(q, v)| q.iter().chain(v.iter()).copied().collect::<Vec<f64>>()).collect()
@@ -56,14 +56,15 @@ fn linkwork_contender<M: Copy + 'static, R: ToNumberList + 'static, const N: usi
     states: &Rc<Vec<State<N, N>>>,
     call: MechanismCall<M, R, N, N>,
 ) -> Box<dyn Contender> {
-    let (owner, name, states) = (Owner::Linkwork, Function::Step.function_name(), states.clone());
+    let (owner, name, states) =
+        (ContenderOwner::Linkwork, MeasuredFunction::Step.generated_function_name(), states.clone());
     Box::new(GeneratedContender { owner, mechanism, states, name, call })
 }
 
 /// Result of a contender whose values are not compared with those of the others.
-struct UnreadResult<R>(R);
+struct UncomparedResult<R>(R);
 
-impl<R> ToNumberList for UnreadResult<R> {
+impl<R> ToNumberList for UncomparedResult<R> {
     fn flatten(&self) -> Vec<f64> {
         Vec::new()
     }
@@ -90,9 +91,9 @@ where
         let mut all = Vec::new();
         for file in ["plain.exact", "plain.fast", "shared.exact", "shared.fast"] {
             let path = folder.join(name).join(format!("step_{file}.so"));
-            all.extend(library::load_casadi_function(&path, Function::Step, rows));
+            all.extend(library::load_casadi_function(&path, MeasuredFunction::Step, rows));
         }
-        all.push(linkwork_contender(m, &states, |m, s| MatrixBlocks(step_jacobian(m, s))));
+        all.push(linkwork_contender(m, &states, |m, s| StepJacobianBlocks(step_jacobian(m, s))));
         let wrong = remove_disagreeing_contenders(&mut all, name, (2 * N, STATES), TOLERANCE);
         if !wrong.is_empty() {
             return Err(wrong.join("\n"));
@@ -101,7 +102,10 @@ where
         let shortest_time_of_owner = |owner| {
             measured.iter().filter(|m| m.owner == owner).map(|m| m.time).fold(f64::INFINITY, f64::min)
         };
-        let (ours, theirs) = (shortest_time_of_owner(Owner::Linkwork), shortest_time_of_owner(Owner::Casadi));
+        let (ours, theirs) = (
+            shortest_time_of_owner(ContenderOwner::Linkwork),
+            shortest_time_of_owner(ContenderOwner::Casadi),
+        );
         println!(
             "| {name} | step with Jacobians | {ours:.0} | CasADi C | {theirs:.0} | {:.1} × |",
             theirs / ours
@@ -109,21 +113,21 @@ where
     }
     let found = nanoseconds_per_call(vec![
         linkwork_contender(m, &states, |m, s| {
-            UnreadResult(m.inverse_dynamics_derivatives(0.0, &s.q, &s.v, &s.a))
+            UncomparedResult(m.inverse_dynamics_derivatives(0.0, &s.q, &s.v, &s.a))
         }),
         linkwork_contender(m, &states, |m, s| {
-            UnreadResult(m.inverse_dynamics_second_derivatives(0.0, &s.q, &s.v, &s.a, &s.tau))
+            UncomparedResult(m.inverse_dynamics_second_derivatives(0.0, &s.q, &s.v, &s.a, &s.tau))
         }),
         linkwork_contender(m, &states, |m, s| {
-            UnreadResult(m.forward_dynamics_derivatives(0.0, &s.q, &s.v, &s.tau))
+            UncomparedResult(m.forward_dynamics_derivatives(0.0, &s.q, &s.v, &s.tau))
         }),
         linkwork_contender(m, &states, |m, s| {
-            UnreadResult(m.forward_dynamics_second_derivatives(0.0, &s.q, &s.v, &s.tau, &s.a))
+            UncomparedResult(m.forward_dynamics_second_derivatives(0.0, &s.q, &s.v, &s.tau, &s.a))
         }),
-        linkwork_contender(m, &states, |m, s| UnreadResult(step_jacobian(m, s))),
+        linkwork_contender(m, &states, |m, s| UncomparedResult(step_jacobian(m, s))),
         linkwork_contender(m, &states, |m, s| {
             let factors = (&s.a, &s.tau);
-            UnreadResult(discrete::second_order(m, &Rk4::step(PERIOD), 0.0, &s.q, &s.v, &s.tau, factors))
+            UncomparedResult(discrete::second_order(m, &Rk4::step(PERIOD), 0.0, &s.q, &s.v, &s.tau, factors))
         }),
     ]);
     for (what, pair) in ["inverse dynamics", "forward dynamics", "step"].iter().zip(found.chunks_exact(2)) {

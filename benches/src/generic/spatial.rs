@@ -5,35 +5,35 @@ use std::ops::{Add, AddAssign, Mul, Sub};
 
 /// Twist (velocity of the origin, angular velocity) or wrench (force, moment about the origin).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Spatial {
+pub struct SpatialVector {
     /// Linear part of a spatial vector: velocity of the origin, or force.
     pub linear: Vector3<f64>,
     /// Angular part of a spatial vector: angular velocity, or moment about the origin.
     pub angular: Vector3<f64>,
 }
 
-impl Spatial {
+impl SpatialVector {
     /// Creates a spatial vector from its linear and angular parts.
-    pub fn new(linear: Vector3<f64>, angular: Vector3<f64>) -> Spatial {
-        Spatial { linear, angular }
+    pub fn new(linear: Vector3<f64>, angular: Vector3<f64>) -> SpatialVector {
+        SpatialVector { linear, angular }
     }
 
     /// Returns the spatial vector of zeros.
-    pub fn zero() -> Spatial {
-        Spatial::new(Vector3::zeros(), Vector3::zeros())
+    pub fn zero() -> SpatialVector {
+        SpatialVector::new(Vector3::zeros(), Vector3::zeros())
     }
 
     /// Returns the spatial unit vector whose entry `k` is one.
-    pub fn unit_vector(k: usize) -> Spatial {
-        let mut s = Spatial::zero();
+    pub fn unit_vector(k: usize) -> SpatialVector {
+        let mut s = SpatialVector::zero();
         let part = if k < 3 { &mut s.linear } else { &mut s.angular };
         part[k % 3] = 1.0;
         s
     }
 
     /// Creates a spatial vector from the first six numbers.
-    pub fn from_slice(s: &[f64]) -> Spatial {
-        Spatial::new(Vector3::new(s[0], s[1], s[2]), Vector3::new(s[3], s[4], s[5]))
+    pub fn from_slice(s: &[f64]) -> SpatialVector {
+        SpatialVector::new(Vector3::new(s[0], s[1], s[2]), Vector3::new(s[3], s[4], s[5]))
     }
 
     /// Returns the six entries, linear before angular, as one vector.
@@ -43,56 +43,56 @@ impl Spatial {
     }
 
     /// Applies a function to the linear and to the angular part.
-    pub fn map(&self, f: impl Fn(&Vector3<f64>) -> Vector3<f64>) -> Spatial {
-        Spatial::new(f(&self.linear), f(&self.angular))
+    pub fn map_linear_and_angular(&self, f: impl Fn(&Vector3<f64>) -> Vector3<f64>) -> SpatialVector {
+        SpatialVector::new(f(&self.linear), f(&self.angular))
     }
 
     /// Returns the scalar product of twist and wrench: a power.
-    pub fn dot(&self, other: &Spatial) -> f64 {
+    pub fn dot(&self, other: &SpatialVector) -> f64 {
         self.linear.dot(&other.linear) + self.angular.dot(&other.angular)
     }
 
     /// Returns the rate of a twist that is fixed in a frame moving with this twist.
-    pub fn cross(&self, other: &Spatial) -> Spatial {
-        Spatial::new(
+    pub fn cross(&self, other: &SpatialVector) -> SpatialVector {
+        SpatialVector::new(
             self.angular.cross(&other.linear) + self.linear.cross(&other.angular),
             self.angular.cross(&other.angular),
         )
     }
 
     /// Returns the rate of a wrench that is fixed in a frame moving with this twist.
-    pub fn cross_force(&self, wrench: &Spatial) -> Spatial {
-        Spatial::new(
+    pub fn cross_force(&self, wrench: &SpatialVector) -> SpatialVector {
+        SpatialVector::new(
             self.angular.cross(&wrench.linear),
             self.angular.cross(&wrench.angular) + self.linear.cross(&wrench.linear),
         )
     }
 }
 
-impl Add for Spatial {
-    type Output = Spatial;
-    fn add(self, b: Spatial) -> Spatial {
-        Spatial::new(self.linear + b.linear, self.angular + b.angular)
+impl Add for SpatialVector {
+    type Output = SpatialVector;
+    fn add(self, b: SpatialVector) -> SpatialVector {
+        SpatialVector::new(self.linear + b.linear, self.angular + b.angular)
     }
 }
 
-impl Sub for Spatial {
-    type Output = Spatial;
-    fn sub(self, b: Spatial) -> Spatial {
-        Spatial::new(self.linear - b.linear, self.angular - b.angular)
+impl Sub for SpatialVector {
+    type Output = SpatialVector;
+    fn sub(self, b: SpatialVector) -> SpatialVector {
+        SpatialVector::new(self.linear - b.linear, self.angular - b.angular)
     }
 }
 
-impl AddAssign for Spatial {
-    fn add_assign(&mut self, b: Spatial) {
+impl AddAssign for SpatialVector {
+    fn add_assign(&mut self, b: SpatialVector) {
         *self = *self + b;
     }
 }
 
-impl Mul<f64> for Spatial {
-    type Output = Spatial;
-    fn mul(self, s: f64) -> Spatial {
-        Spatial::new(self.linear * s, self.angular * s)
+impl Mul<f64> for SpatialVector {
+    type Output = SpatialVector;
+    fn mul(self, s: f64) -> SpatialVector {
+        SpatialVector::new(self.linear * s, self.angular * s)
     }
 }
 
@@ -112,7 +112,7 @@ impl Placement {
     }
 
     /// Returns the identity placement.
-    pub fn identity() -> Placement {
+    pub fn identity_placement() -> Placement {
         Placement::new(Matrix3::identity(), Vector3::zeros())
     }
 
@@ -122,29 +122,29 @@ impl Placement {
     }
 
     /// Returns the placement of the parent frame in the child frame.
-    pub fn inverse(&self) -> Placement {
+    pub fn inverse_placement(&self) -> Placement {
         let rotation = self.rotation.transpose();
         Placement::new(rotation, -(rotation * self.translation))
     }
 
     /// Transforms a twist from the parent's frame to the child's.
-    pub fn twist_to_child(&self, t: &Spatial) -> Spatial {
-        Spatial::new(
+    pub fn twist_to_child(&self, t: &SpatialVector) -> SpatialVector {
+        SpatialVector::new(
             self.rotation.tr_mul(&(t.linear + t.angular.cross(&self.translation))),
             self.rotation.tr_mul(&t.angular),
         )
     }
 
     /// Transforms a twist from the child's frame to the parent's.
-    pub fn twist_to_parent(&self, t: &Spatial) -> Spatial {
+    pub fn twist_to_parent(&self, t: &SpatialVector) -> SpatialVector {
         let angular = self.rotation * t.angular;
-        Spatial::new(self.rotation * t.linear + self.translation.cross(&angular), angular)
+        SpatialVector::new(self.rotation * t.linear + self.translation.cross(&angular), angular)
     }
 
     /// Transforms a wrench from the child's frame to the parent's.
-    pub fn wrench_to_parent(&self, w: &Spatial) -> Spatial {
+    pub fn wrench_to_parent(&self, w: &SpatialVector) -> SpatialVector {
         let force = self.rotation * w.linear;
-        Spatial::new(force, self.rotation * w.angular + self.translation.cross(&force))
+        SpatialVector::new(force, self.rotation * w.angular + self.translation.cross(&force))
     }
 }
 
@@ -161,7 +161,7 @@ pub struct Inertia {
 
 impl Inertia {
     /// Returns the inertia of a massless link.
-    pub fn zero() -> Inertia {
+    pub fn zero_inertia() -> Inertia {
         Inertia { mass: 0.0, moment: Vector3::zeros(), tensor: Matrix3::zeros() }
     }
 
@@ -175,8 +175,8 @@ impl Inertia {
     }
 
     /// Returns the spatial momentum of a body with this inertia and twist.
-    pub fn momentum_of_twist(&self, t: &Spatial) -> Spatial {
-        Spatial::new(
+    pub fn momentum_of_twist(&self, t: &SpatialVector) -> SpatialVector {
+        SpatialVector::new(
             t.linear * self.mass + t.angular.cross(&self.moment),
             self.tensor * t.angular + self.moment.cross(&t.linear),
         )
@@ -225,12 +225,15 @@ impl ArticulatedInertia {
     }
 
     /// Returns the wrench that gives a body of this articulated inertia an acceleration.
-    pub fn wrench_of_acceleration(&self, a: &Spatial) -> Spatial {
-        Spatial::new(self.m * a.linear + self.h.tr_mul(&a.angular), self.h * a.linear + self.i * a.angular)
+    pub fn wrench_of_acceleration(&self, a: &SpatialVector) -> SpatialVector {
+        SpatialVector::new(
+            self.m * a.linear + self.h.tr_mul(&a.angular),
+            self.h * a.linear + self.i * a.angular,
+        )
     }
 
     /// Returns the articulated inertia after elimination of a joint: `IA − U Uᵀ / D`.
-    pub fn inertia_after_joint_elimination(&self, u: &Spatial, inverse: f64) -> ArticulatedInertia {
+    pub fn inertia_after_joint_elimination(&self, u: &SpatialVector, inverse: f64) -> ArticulatedInertia {
         let scaled = *u * inverse;
         ArticulatedInertia {
             m: self.m - scaled.linear * u.linear.transpose(),
@@ -251,7 +254,7 @@ impl ArticulatedInertia {
     }
 
     /// Returns the acceleration that a wrench causes by this articulated inertia.
-    pub fn acceleration_from_wrench(&self, wrench: &Spatial) -> Spatial {
+    pub fn acceleration_from_wrench(&self, wrench: &SpatialVector) -> SpatialVector {
         let mut full = Matrix6::zeros();
         full.fixed_view_mut::<3, 3>(0, 0).copy_from(&self.m);
         full.fixed_view_mut::<3, 3>(0, 3).copy_from(&self.h.transpose());
@@ -259,7 +262,7 @@ impl ArticulatedInertia {
         full.fixed_view_mut::<3, 3>(3, 3).copy_from(&self.i);
         let nothing = Vector6::from_element(f64::NAN);
         let solved = full.cholesky().map_or(nothing, |factors| factors.solve(&wrench.as_six_vector()));
-        Spatial::from_slice(solved.as_slice())
+        SpatialVector::from_slice(solved.as_slice())
     }
 }
 

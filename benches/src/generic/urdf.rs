@@ -1,7 +1,7 @@
 //! Reads a URDF file into a [`Model`]. Fixed links are merged into the links that carry them. Coordinates are
 //! depth first, with the joints of one link in alphabetical order.
 
-use super::{Frame, Inertia, Link, Model, Motion, Placement};
+use super::{Frame, Inertia, JointMotion, Link, Model, Placement};
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use roxmltree::{Document, Node};
 
@@ -37,8 +37,10 @@ pub fn read_urdf(text: &str, options: &Options<'_>) -> Result<Model, String> {
             nv: 0,
         },
     };
-    let at = options.free.then(|| reader.add(None, Placement::identity(), Motion::Free));
-    reader.read_link_tree(root.attribute("name").unwrap_or_default(), at, Placement::identity())?;
+    let at = options
+        .free
+        .then(|| reader.add_massless_link(None, Placement::identity_placement(), JointMotion::Free));
+    reader.read_link_tree(root.attribute("name").unwrap_or_default(), at, Placement::identity_placement())?;
     Ok(reader.model)
 }
 
@@ -57,12 +59,17 @@ struct UrdfReader<'a, 'd, 'i> {
 
 impl UrdfReader<'_, '_, '_> {
     /// Adds a moving link of zero mass, and returns its index.
-    fn add(&mut self, parent: Option<usize>, placement: Placement, motion: Motion) -> usize {
+    fn add_massless_link(
+        &mut self,
+        parent: Option<usize>,
+        placement: Placement,
+        motion: JointMotion,
+    ) -> usize {
         let (nq, nv) = motion.entry_counts_of_q_and_v();
         let (q, v) = (self.model.nq, self.model.nv);
         self.model.nq += nq;
         self.model.nv += nv;
-        self.model.links.push(Link { parent, placement, motion, q, v, inertia: Inertia::zero() });
+        self.model.links.push(Link { parent, placement, motion, q, v, inertia: Inertia::zero_inertia() });
         self.model.links.len() - 1
     }
 
@@ -80,8 +87,8 @@ impl UrdfReader<'_, '_, '_> {
             match self.motion_of_joint(joint)? {
                 None => self.read_link_tree(child, at, origin)?,
                 Some(motion) => {
-                    let link = self.add(at, origin, motion);
-                    self.read_link_tree(child, Some(link), Placement::identity())?;
+                    let link = self.add_massless_link(at, origin, motion);
+                    self.read_link_tree(child, Some(link), Placement::identity_placement())?;
                 }
             }
         }
@@ -89,7 +96,7 @@ impl UrdfReader<'_, '_, '_> {
     }
 
     /// Returns the motion of a joint, or `None` if it is fixed or locked.
-    fn motion_of_joint(&self, joint: &Node<'_, '_>) -> Result<Option<Motion>, String> {
+    fn motion_of_joint(&self, joint: &Node<'_, '_>) -> Result<Option<JointMotion>, String> {
         let name = joint.attribute("name").unwrap_or_default();
         if self.lock.contains(&name) {
             return Ok(None);
@@ -102,9 +109,9 @@ impl UrdfReader<'_, '_, '_> {
         let axis = Unit::try_new(axis, 1e-9).ok_or_else(|| format!("joint `{name}`: the axis is zero"))?;
         match joint.attribute("type").unwrap_or_default() {
             "fixed" => Ok(None),
-            "revolute" | "continuous" => Ok(Some(Motion::Turn(axis))),
-            "prismatic" => Ok(Some(Motion::Slide(axis))),
-            "floating" => Ok(Some(Motion::Free)),
+            "revolute" | "continuous" => Ok(Some(JointMotion::Turn(axis))),
+            "prismatic" => Ok(Some(JointMotion::Slide(axis))),
+            "floating" => Ok(Some(JointMotion::Free)),
             other => Err(format!("joint `{name}`: type `{other}` is not supported")),
         }
     }
@@ -113,7 +120,7 @@ impl UrdfReader<'_, '_, '_> {
 /// Reads an `<origin>` element as a placement.
 fn read_origin(parent: &Node<'_, '_>) -> Result<Placement, String> {
     let Some(node) = parent.children().find(|n| n.has_tag_name("origin")) else {
-        return Ok(Placement::identity());
+        return Ok(Placement::identity_placement());
     };
     let angles = read_vector_attribute(&node, "rpy")?;
     let rotation = Rotation3::from_euler_angles(angles.x, angles.y, angles.z);

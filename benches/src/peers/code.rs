@@ -11,7 +11,7 @@ const SMALLEST: u64 = 500;
 /// Returns the bytes of machine code of the function `name` of the mechanism `M`, plus those of its caller at
 /// an address, into which it may have been inlined. Returns `None` if it only calls other functions, or if
 /// the system does not report the sizes.
-pub fn machine_code_bytes<M>(caller: *const (), name: &str) -> Option<u64> {
+pub fn machine_code_size<M>(caller: *const (), name: &str) -> Option<u64> {
     static SIZES: OnceLock<Option<SymbolCodeSizes>> = OnceLock::new();
     let sizes = SIZES.get_or_init(SymbolCodeSizes::read_symbol_sizes).as_ref()?;
     let mechanism = type_name::<M>().rsplit("::").next()?;

@@ -2,7 +2,7 @@
 
 /// Function of robot dynamics that is measured. Matrices of results are in column-major order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Function {
+pub enum MeasuredFunction {
     /// Inverse dynamics: `τ`.
     Inverse,
     /// Mass matrix: `M`, both triangles.
@@ -21,74 +21,77 @@ pub enum Function {
     Step,
 }
 
-impl Function {
+impl MeasuredFunction {
     /// Functions of robots, in the order in which peers number them; functions of constrained mechanisms
     /// follow.
-    pub const ALL: [Function; 5] = [
-        Function::Inverse,
-        Function::Mass,
-        Function::Forward,
-        Function::InverseDerivatives,
-        Function::ForwardDerivatives,
+    pub const ALL: [MeasuredFunction; 5] = [
+        MeasuredFunction::Inverse,
+        MeasuredFunction::Mass,
+        MeasuredFunction::Forward,
+        MeasuredFunction::InverseDerivatives,
+        MeasuredFunction::ForwardDerivatives,
     ];
 
     /// Returns the title of the function in the printed table.
     pub fn title_in_table(self) -> &'static str {
         match self {
-            Function::Inverse => "inverse dynamics",
-            Function::Mass => "mass matrix",
-            Function::Forward => "forward dynamics",
-            Function::InverseDerivatives => "∂τ/∂q, ∂τ/∂v",
-            Function::ForwardDerivatives => "∂v̇/∂q, ∂v̇/∂v, M⁻¹",
-            Function::Constrained => "accelerations",
-            Function::Motion => "motion",
-            Function::Step => "step with Jacobians",
+            MeasuredFunction::Inverse => "inverse dynamics",
+            MeasuredFunction::Mass => "mass matrix",
+            MeasuredFunction::Forward => "forward dynamics",
+            MeasuredFunction::InverseDerivatives => "∂τ/∂q, ∂τ/∂v",
+            MeasuredFunction::ForwardDerivatives => "∂v̇/∂q, ∂v̇/∂v, M⁻¹",
+            MeasuredFunction::Constrained => "accelerations",
+            MeasuredFunction::Motion => "motion",
+            MeasuredFunction::Step => "step with Jacobians",
         }
     }
 
     /// Returns the name of the function in Linkwork's generated code.
-    pub fn function_name(self) -> &'static str {
+    pub fn generated_function_name(self) -> &'static str {
         match self {
-            Function::Inverse => "inverse_dynamics",
-            Function::Mass => "mass_matrix",
-            Function::Forward => "forward_dynamics",
-            Function::InverseDerivatives => "inverse_dynamics_derivatives",
-            Function::ForwardDerivatives => "forward_dynamics_derivatives",
-            Function::Constrained => "constrained_dynamics",
-            Function::Motion => "simulate",
-            Function::Step => "transition",
+            MeasuredFunction::Inverse => "inverse_dynamics",
+            MeasuredFunction::Mass => "mass_matrix",
+            MeasuredFunction::Forward => "forward_dynamics",
+            MeasuredFunction::InverseDerivatives => "inverse_dynamics_derivatives",
+            MeasuredFunction::ForwardDerivatives => "forward_dynamics_derivatives",
+            MeasuredFunction::Constrained => "constrained_dynamics",
+            MeasuredFunction::Motion => "simulate",
+            MeasuredFunction::Step => "transition",
         }
     }
 
     /// Returns the name of the function in file names.
     pub fn file_name(self) -> &'static str {
         match self {
-            Function::Inverse => "inverse",
-            Function::Mass => "mass",
-            Function::Forward => "forward",
-            Function::InverseDerivatives => "inverse_derivatives",
-            Function::ForwardDerivatives => "forward_derivatives",
-            Function::Constrained => "constrained",
-            Function::Motion => "motion",
-            Function::Step => "step",
+            MeasuredFunction::Inverse => "inverse",
+            MeasuredFunction::Mass => "mass",
+            MeasuredFunction::Forward => "forward",
+            MeasuredFunction::InverseDerivatives => "inverse_derivatives",
+            MeasuredFunction::ForwardDerivatives => "forward_derivatives",
+            MeasuredFunction::Constrained => "constrained",
+            MeasuredFunction::Motion => "motion",
+            MeasuredFunction::Step => "step",
         }
     }
 
     /// Returns the number of columns of the result for `nv` velocities; each has `nv` numbers.
-    pub fn column_count(self, nv: usize) -> usize {
+    pub fn result_column_count(self, nv: usize) -> usize {
         match self {
-            Function::Inverse | Function::Forward | Function::Constrained | Function::Motion => 1,
-            Function::Mass => nv,
-            Function::InverseDerivatives => 2 * nv,
-            Function::ForwardDerivatives => 3 * nv,
-            Function::Step => 6 * nv,
+            MeasuredFunction::Inverse
+            | MeasuredFunction::Forward
+            | MeasuredFunction::Constrained
+            | MeasuredFunction::Motion => 1,
+            MeasuredFunction::Mass => nv,
+            MeasuredFunction::InverseDerivatives => 2 * nv,
+            MeasuredFunction::ForwardDerivatives => 3 * nv,
+            MeasuredFunction::Step => 6 * nv,
         }
     }
 }
 
 /// Library or variant that provides an implementation: a column of the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Owner {
+pub enum ContenderOwner {
     /// Generated by Linkwork, with all values as constants in the code.
     Linkwork,
     /// Functions generated by Linkwork that write results to reused matrices, whose structural zeros are
@@ -113,7 +116,7 @@ pub enum Owner {
 /// One implementation of one function of one robot, with its copy of the states.
 pub trait Contender {
     /// Returns the library that the implementation belongs to.
-    fn owner(&self) -> Owner;
+    fn owner(&self) -> ContenderOwner;
     /// Returns the name of the variant among the implementations of one library.
     fn variant_name(&self) -> String;
     /// Evaluates the measured function once at every state, in order.

@@ -1,7 +1,7 @@
 //! Contenders of the comparison that call generated functions.
 
 use super::code;
-use super::contender::{Contender, Owner};
+use super::contender::{Contender, ContenderOwner};
 use crate::states::State;
 use linkwork::nalgebra::SMatrix;
 use std::hint::black_box;
@@ -13,7 +13,7 @@ pub type MechanismCall<M, R, const NQ: usize, const NV: usize> = fn(&M, &State<N
 /// Contender that calls a generated function of a mechanism.
 pub struct GeneratedContender<M, R, const NQ: usize, const NV: usize> {
     /// Variant of the generated code: with or without parameters.
-    pub owner: Owner,
+    pub owner: ContenderOwner,
     /// Mechanism whose function is called.
     pub mechanism: M,
     /// States at which the function is called.
@@ -25,7 +25,7 @@ pub struct GeneratedContender<M, R, const NQ: usize, const NV: usize> {
 }
 
 impl<M, R: ToNumberList, const NQ: usize, const NV: usize> Contender for GeneratedContender<M, R, NQ, NV> {
-    fn owner(&self) -> Owner {
+    fn owner(&self) -> ContenderOwner {
         self.owner
     }
 
@@ -45,7 +45,7 @@ impl<M, R: ToNumberList, const NQ: usize, const NV: usize> Contender for Generat
     }
 
     fn machine_code_size(&self) -> Option<u64> {
-        code::machine_code_bytes::<M>(self.call as *const (), self.name)
+        code::machine_code_size::<M>(self.call as *const (), self.name)
     }
 }
 
@@ -64,8 +64,8 @@ pub struct MatrixContender<M, const NQ: usize, const NV: usize, const K: usize> 
 }
 
 impl<M, const NQ: usize, const NV: usize, const K: usize> Contender for MatrixContender<M, NQ, NV, K> {
-    fn owner(&self) -> Owner {
-        Owner::Kept
+    fn owner(&self) -> ContenderOwner {
+        ContenderOwner::Kept
     }
 
     fn variant_name(&self) -> String {
@@ -85,7 +85,7 @@ impl<M, const NQ: usize, const NV: usize, const K: usize> Contender for MatrixCo
     }
 
     fn machine_code_size(&self) -> Option<u64> {
-        code::machine_code_bytes::<M>(self.call as *const (), self.name)
+        code::machine_code_size::<M>(self.call as *const (), self.name)
     }
 }
 

@@ -1,7 +1,7 @@
 //! Comparison of the results of contenders, and measurement of their times in turns.
 
 use super::clock;
-use super::contender::{Contender, Owner};
+use super::contender::{Contender, ContenderOwner};
 
 /// Tolerance between results of contenders, relative to one plus the largest number of the column.
 pub const TOLERANCE: f64 = 1e-9;
@@ -11,7 +11,7 @@ const BATCH: f64 = 1e-4;
 /// Measured time and code size of a contender.
 pub struct ContenderMeasurement {
     /// Library that the contender belongs to.
-    pub owner: Owner,
+    pub owner: ContenderOwner,
     /// Variant of the contender among the implementations of one library.
     pub variant: String,
     /// Processor time per call, ns.
@@ -33,8 +33,9 @@ pub fn remove_disagreeing_contenders(
     let mut wrong = Vec::new();
     contenders.retain_mut(|contender| {
         let errors = expected.iter().enumerate();
-        let errors =
-            errors.map(|(state, expected)| difference(&contender.result_at_state(state), expected, nv));
+        let errors = errors.map(|(state, expected)| {
+            largest_relative_difference(&contender.result_at_state(state), expected, nv)
+        });
         let error = largest_or_nan(errors);
         let good = error <= tolerance;
         if !good {
@@ -43,7 +44,10 @@ pub fn remove_disagreeing_contenders(
             eprintln!("{message}");
             if matches!(
                 contender.owner(),
-                Owner::Linkwork | Owner::Kept | Owner::Parameters | Owner::Prepared
+                ContenderOwner::Linkwork
+                    | ContenderOwner::Kept
+                    | ContenderOwner::Parameters
+                    | ContenderOwner::Prepared
             ) {
                 wrong.push(message);
             }
@@ -54,7 +58,7 @@ pub fn remove_disagreeing_contenders(
 }
 
 /// Returns the largest difference of a result, relative in each column.
-pub fn difference(found: &[f64], expected: &[f64], nv: usize) -> f64 {
+pub fn largest_relative_difference(found: &[f64], expected: &[f64], nv: usize) -> f64 {
     assert_eq!(found.len(), expected.len(), "size of a result");
     let columns = found.chunks_exact(nv).zip(expected.chunks_exact(nv));
     largest_or_nan(columns.map(|(found, expected)| {

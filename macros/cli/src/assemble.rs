@@ -86,7 +86,7 @@ impl MechanismAssembler<'_, '_> {
     /// # Errors
     ///
     /// The mass matrix cannot be evaluated.
-    pub fn has_positive_definite_inertia(&self, q: &[f64]) -> Result<bool, Stop> {
+    pub fn has_positive_definite_constrained_inertia(&self, q: &[f64]) -> Result<bool, Stop> {
         let matrix = self.robot.mass_matrix(q)?;
         let (rows, columns) = (self.model.constraints.len(), matrix.ncols());
         if matrix.clone().cholesky().is_some() {

@@ -1,7 +1,7 @@
 //! The command `linkwork check`: lists every error with its location.
 
 use crate::Stop;
-use crate::input::{Input, SourceError};
+use crate::input::{MechanismInput, SourceError};
 use clap::ArgMatches;
 use linkwork_compiler::compile;
 use linkwork_compiler::diag::Diagnostics;
@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 
 pub fn run_check(matches: &ArgMatches) -> Result<(), Stop> {
     let as_json = matches.get_flag("json");
-    let inputs = match Input::select_mechanisms(matches) {
+    let inputs = match MechanismInput::select_mechanisms(matches) {
         Err(Stop::Syntax(error)) if as_json => {
             crate::say!("{:#}", json!({ "messages": [error_as_json(&error)] }));
             return Err(Stop::Errors);

@@ -2,8 +2,8 @@
 
 use crate::Stop;
 use crate::export::write_output;
-use crate::input::Input;
-use crate::names::Names;
+use crate::input::MechanismInput;
+use crate::names::StructFieldNames;
 use crate::written::{self, NameRole, format_number, format_vector};
 use clap::ArgMatches;
 use linkwork_compiler::compile;
@@ -11,15 +11,15 @@ use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::resolve::build_model;
 use linkwork_compiler::syntax::{
-    Body, ConstraintKind, Description, Drive, DriveLaw, DriveTarget, Endpoint, Expr, ExprKind, GROUND,
-    InertiaOption, Joint, JointKind, Key, Limit, Name, RequestedFunctions, Wrench,
+    Body, ConstraintKind, Description, Endpoint, Expr, ExprKind, FileForceElement, FileForceLaw,
+    FileForceTarget, GROUND, InertiaOption, Joint, JointKind, Key, Limit, Name, RequestedFunctions, Wrench,
 };
 use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::path::PathBuf;
 
 pub fn run_convert(matches: &ArgMatches) -> Result<(), Stop> {
-    let input = Input::one(matches)?;
+    let input = MechanismInput::select_one_mechanism(matches)?;
     if !input.is_robot {
         return Err(Stop::Failure(format!(
             "{} is not a robot file: there is nothing to convert",
@@ -48,7 +48,8 @@ pub fn run_convert(matches: &ArgMatches) -> Result<(), Stop> {
         ));
     }
     let description = &source.mechanism.description;
-    let is_expression_drive = |drive: &&Drive| matches!(drive.law, DriveLaw::Expression { .. });
+    let is_expression_drive =
+        |drive: &&FileForceElement| matches!(drive.law, FileForceLaw::Expression { .. });
     if let Some(drive) = description.drives.iter().find(is_expression_drive) {
         return Err(Stop::Failure(format!(
             "`convert` cannot write the actuator `{}`, whose force depends on a state or on its inputs: keep \
@@ -69,9 +70,9 @@ pub fn run_convert(matches: &ArgMatches) -> Result<(), Stop> {
 
 struct ConvertedStruct<'a> {
     description: &'a Description,
-    links: Names,
-    joints: Names,
-    others: Names,
+    links: StructFieldNames,
+    joints: StructFieldNames,
+    others: StructFieldNames,
     /// Names of drives on cable lengths that do not change with the motion.
     constant: BTreeSet<String>,
     fields: String,
@@ -86,9 +87,10 @@ const RENAMED_SHOWN: usize = 4;
 
 impl<'a> ConvertedStruct<'a> {
     fn new(description: &'a Description) -> ConvertedStruct<'a> {
-        let mut taken = Names::default();
-        let links = taken.add(description.bodies.iter().map(|body| &*body.name.text), "link");
-        let joints = taken.add(description.joints.iter().map(|joint| &*joint.name.text), "joint");
+        let mut taken = StructFieldNames::default();
+        let links = taken.add_names_of_kind(description.bodies.iter().map(|body| &*body.name.text), "link");
+        let joints =
+            taken.add_names_of_kind(description.joints.iter().map(|joint| &*joint.name.text), "joint");
         let (fields, notes, renamed) = (String::new(), Vec::new(), Vec::new());
         let constant = drives_on_constant_lengths(description);
         let mut made =
@@ -126,7 +128,7 @@ impl<'a> ConvertedStruct<'a> {
         }
     }
 
-    fn convert_to_struct(&mut self, input: &Input) -> String {
+    fn convert_to_struct(&mut self, input: &MechanismInput) -> String {
         let d = self.description;
         d.bodies.iter().filter(|body| body.name.text != GROUND).for_each(|body| self.add_body(body));
         d.joints.iter().for_each(|joint| self.add_joint(joint));
@@ -150,7 +152,7 @@ impl<'a> ConvertedStruct<'a> {
             self.declare_named_element(&format!("#[constraint({value}{other})]"), named, kind);
         }
         d.limits.iter().for_each(|limit| self.add_limit(limit));
-        if d.limits.iter().any(|limit| limit.arguments.get(Key::Restitution).is_some()) {
+        if d.limits.iter().any(|limit| limit.arguments.expression_of_key(Key::Restitution).is_some()) {
             self.notes.push("limits are bounds here, not stops".to_string());
         }
         if !d.contacts.is_empty() {
@@ -298,7 +300,7 @@ impl<'a> ConvertedStruct<'a> {
             let motor = self.add_unique_field(&attribute, &format!("{on}_motor"), motor_type(joint.kind));
             self.record_renamed_element("input", &joint.name.text, &motor);
         }
-        let is_driven_by_input = |drive: &&Drive| matches!(drive.law, DriveLaw::Input(_));
+        let is_driven_by_input = |drive: &&FileForceElement| matches!(drive.law, FileForceLaw::Input(_));
         for drive in self.description.drives.iter().filter(is_driven_by_input) {
             if let [(joint, 1.0)] = drive.on.weighted_joints() {
                 let on = self.joints.field_name_or_original(&joint.text);
@@ -314,7 +316,7 @@ impl<'a> ConvertedStruct<'a> {
                 let name = self.others.unused_field_name(&drive.name.text, "input");
                 self.record_renamed_element("input", &drive.name.text, &name);
                 let _ = writeln!(self.fields, "    {name}: Input,");
-                if let DriveTarget::Wrench(wrench) = &drive.on {
+                if let FileForceTarget::Wrench(wrench) = &drive.on {
                     self.add_wrench(wrench, &name, &name);
                 }
             }
@@ -323,12 +325,12 @@ impl<'a> ConvertedStruct<'a> {
 
     /// Returns the length or the weighted sum of coordinates that a drive acts on; `None` if it does not
     /// change with the motion, and for a drive at a point of a body.
-    fn drive_length_text(&self, drive: &Drive) -> Option<String> {
+    fn drive_length_text(&self, drive: &FileForceElement) -> Option<String> {
         match &drive.on {
-            DriveTarget::Length(length) => {
+            FileForceTarget::Length(length) => {
                 (!self.constant.contains(&drive.name.text)).then(|| self.format_expression(length))
             }
-            DriveTarget::Sum(terms) => {
+            FileForceTarget::Sum(terms) => {
                 let terms = terms.iter().filter(|(_, weight)| *weight != 0.0);
                 let weighted_joint_term = |(joint, weight): &(Name, f64)| {
                     format!(
@@ -341,7 +343,7 @@ impl<'a> ConvertedStruct<'a> {
                     .map(weighted_joint_term)
                     .reduce(|sum, weighted_joint_term| format!("{sum} + {weighted_joint_term}"))
             }
-            DriveTarget::Wrench(_) => None,
+            FileForceTarget::Wrench(_) => None,
         }
     }
 
@@ -424,15 +426,15 @@ impl<'a> ConvertedStruct<'a> {
     }
 
     /// Adds a spring or another element of a file. On one joint, its weight is a factor of the coefficients.
-    fn add_drive(&mut self, drive: &Drive) {
+    fn add_drive(&mut self, drive: &FileForceElement) {
         let name = drive.name.text.as_str();
-        if matches!(drive.law, DriveLaw::Input(_)) {
+        if matches!(drive.law, FileForceLaw::Input(_)) {
             return;
         }
-        if let DriveTarget::Wrench(wrench) = &drive.on {
+        if let FileForceTarget::Wrench(wrench) = &drive.on {
             match drive.law {
-                DriveLaw::Push(force) => self.add_wrench(wrench, name, &format_number(force)),
-                DriveLaw::Damper(damping) => self.add_wrench_damping(wrench, name, damping),
+                FileForceLaw::Push(force) => self.add_wrench(wrench, name, &format_number(force)),
+                FileForceLaw::Damper(damping) => self.add_wrench_damping(wrench, name, damping),
                 // The other laws have no effect without a length.
                 _ => {}
             }
@@ -444,17 +446,17 @@ impl<'a> ConvertedStruct<'a> {
         // The friction law is regularised in the velocity of the weighted sum, and polynomials have several
         // powers of it, so that the weight cannot become a factor.
         let is_scaled = match drive.law {
-            DriveLaw::Friction(_) | DriveLaw::PolynomialDamper(_) => true,
-            DriveLaw::Slack { stiffness, .. } => stiffness[1..] != [0.0; 2],
+            FileForceLaw::Friction(_) | FileForceLaw::PolynomialDamper(_) => true,
+            FileForceLaw::Slack { stiffness, .. } => stiffness[1..] != [0.0; 2],
             _ => false,
         };
         if let [(joint, w)] = drive.on.weighted_joints()
-            && (*w == 1.0 || !is_scaled || (*w == -1.0 && matches!(drive.law, DriveLaw::Friction(_))))
+            && (*w == 1.0 || !is_scaled || (*w == -1.0 && matches!(drive.law, FileForceLaw::Friction(_))))
         {
             let (on, w, kind) =
                 (self.joints.field_name_or_original(&joint.text), *w, self.kind_of_joint(&joint.text));
             let (figures, element) = match drive.law {
-                DriveLaw::Slack { stiffness, range } => {
+                FileForceLaw::Slack { stiffness, range } => {
                     let range = range.map(|end| end / w);
                     (
                         slack_spring_energy_source(
@@ -464,7 +466,7 @@ impl<'a> ConvertedStruct<'a> {
                         "Spring",
                     )
                 }
-                DriveLaw::Spring { stiffness, free } => {
+                FileForceLaw::Spring { stiffness, free } => {
                     let word = if kind == JointKind::Sleeve { "free_length" } else { "free_angle" };
                     let free = if free == 0.0 {
                         String::new()
@@ -473,16 +475,18 @@ impl<'a> ConvertedStruct<'a> {
                     };
                     (format!("stiffness = {}{free}", format_number(stiffness * w * w)), "Spring")
                 }
-                DriveLaw::Damper(damping) => (damper_law_text(damping * w * w), "Dashpot"),
-                DriveLaw::PolynomialDamper(damping) => (polynomial_damper_law(damping), "Dashpot"),
-                DriveLaw::Friction(force) => {
+                FileForceLaw::Damper(damping) => (damper_law_text(damping * w * w), "Dashpot"),
+                FileForceLaw::PolynomialDamper(damping) => (polynomial_damper_law(damping), "Dashpot"),
+                FileForceLaw::Friction(force) => {
                     (format!("coulomb = {}", format_number((force * w).abs())), "Friction")
                 }
-                DriveLaw::Inerter(inertance) => {
+                FileForceLaw::Inerter(inertance) => {
                     (format!("inertance = {}", format_number(inertance * w * w)), "Inerter")
                 }
-                DriveLaw::Push(force) => (format!("value = {}", format_number(force * w)), motor_type(kind)),
-                DriveLaw::Input(_) | DriveLaw::Expression { .. } => return,
+                FileForceLaw::Push(force) => {
+                    (format!("value = {}", format_number(force * w)), motor_type(kind))
+                }
+                FileForceLaw::Input(_) | FileForceLaw::Expression { .. } => return,
             };
             return self.declare_named_element(
                 &format!("#[acts(on = {on}, {figures})]"),
@@ -494,26 +498,30 @@ impl<'a> ConvertedStruct<'a> {
     }
 
     /// Adds a spring or another element on the length of a cable, or on a sum of coordinates.
-    fn add_length_element(&mut self, on: &str, name: &str, law: &DriveLaw) {
+    fn add_length_element(&mut self, on: &str, name: &str, law: &FileForceLaw) {
         let (figures, element) = match *law {
-            DriveLaw::Spring { stiffness, free } => (
+            FileForceLaw::Spring { stiffness, free } => (
                 format!("stiffness = {}, free_length = {}", format_number(stiffness), format_number(free)),
                 "Spring",
             ),
-            DriveLaw::Slack { stiffness, range } => (slack_spring_energy_source(stiffness, range), "Spring"),
-            DriveLaw::Damper(damping) => (damper_law_text(damping), "Dashpot"),
-            DriveLaw::PolynomialDamper(damping) => (polynomial_damper_law(damping), "Dashpot"),
-            DriveLaw::Friction(force) => (format!("coulomb = {}", format_number(force)), "Friction"),
-            DriveLaw::Inerter(inertance) => (format!("inertance = {}", format_number(inertance)), "Inerter"),
-            DriveLaw::Push(force) => (format!("value = {}", format_number(force)), "Force"),
-            DriveLaw::Input(_) | DriveLaw::Expression { .. } => return,
+            FileForceLaw::Slack { stiffness, range } => {
+                (slack_spring_energy_source(stiffness, range), "Spring")
+            }
+            FileForceLaw::Damper(damping) => (damper_law_text(damping), "Dashpot"),
+            FileForceLaw::PolynomialDamper(damping) => (polynomial_damper_law(damping), "Dashpot"),
+            FileForceLaw::Friction(force) => (format!("coulomb = {}", format_number(force)), "Friction"),
+            FileForceLaw::Inerter(inertance) => {
+                (format!("inertance = {}", format_number(inertance)), "Inerter")
+            }
+            FileForceLaw::Push(force) => (format!("value = {}", format_number(force)), "Force"),
+            FileForceLaw::Input(_) | FileForceLaw::Expression { .. } => return,
         };
         self.declare_named_element(&format!("#[acts(on = {on}, {figures})]"), ("element", name), element);
     }
 
     fn add_limit(&mut self, limit: &Limit) {
         let mut figures = vec![format!("on = {}", self.format_expression(&limit.on))];
-        for (key, e) in limit.arguments.iter().filter(|(key, _)| *key != Key::Restitution) {
+        for (key, e) in limit.arguments.keyed_expressions().filter(|(key, _)| *key != Key::Restitution) {
             let value = self.format_expression(e);
             let value =
                 if matches!(key, Key::From | Key::To) { written::format_angle(&value) } else { value };
@@ -559,11 +567,13 @@ fn damper_law_text(damping: f64) -> String {
 /// Returns the names of drives on lengths that do not change with the motion, so that the drives have no
 /// effect.
 fn drives_on_constant_lengths(description: &Description) -> BTreeSet<String> {
-    let acts_on_length = |drive: &&Drive| matches!(drive.on, DriveTarget::Length(_));
-    let lengths: Vec<&Drive> = description.drives.iter().filter(acts_on_length).collect();
+    let acts_on_length = |drive: &&FileForceElement| matches!(drive.on, FileForceTarget::Length(_));
+    let lengths: Vec<&FileForceElement> = description.drives.iter().filter(acts_on_length).collect();
     // The forces on the lengths have different magnitudes, so that the model shows which of them it has.
-    let numbered_push =
-        |(k, drive): (usize, &&Drive)| Drive { law: DriveLaw::Push(k as f64 + 1.0), ..(*drive).clone() };
+    let numbered_push = |(k, drive): (usize, &&FileForceElement)| FileForceElement {
+        law: FileForceLaw::Push(k as f64 + 1.0),
+        ..(*drive).clone()
+    };
     let probe = Description {
         drives: lengths.iter().enumerate().map(numbered_push).collect(),
         ..description.clone()

@@ -3,19 +3,19 @@
 
 use crate::Stop;
 use crate::commands::text_option_value;
-use crate::input::Input;
+use crate::input::MechanismInput;
 use crate::library;
 use crate::motion::named_option_values;
 use clap::ArgMatches;
 use linkwork_compiler::diag::Diagnostics;
-use linkwork_compiler::export::{Options, c_name_prefix, identifier_from_name, snake_case_prefix};
+use linkwork_compiler::export::{Options, c_name_prefix, identifier_from_name, to_snake_case};
 use linkwork_compiler::syntax::{InertiaOption, ScalarType};
-use linkwork_compiler::{Source, expand, export_c, export_cuda, export_wgsl};
+use linkwork_compiler::{ParsedSource, expand, export_c, export_cuda, export_wgsl};
 use std::path::{Path, PathBuf};
 
 /// Writes the C99 source file and header of a mechanism.
 pub fn export_c99_files(matches: &ArgMatches) -> Result<(), Stop> {
-    let input = Input::one(matches)?;
+    let input = MechanismInput::select_one_mechanism(matches)?;
     let cx = &mut Diagnostics::new();
     let source = input.parse_source(cx);
     let mut source = input.result_without_errors(source, cx)?;
@@ -37,7 +37,7 @@ pub fn export_c99_files(matches: &ArgMatches) -> Result<(), Stop> {
 
 /// Writes kernels in CUDA, and functions that launch them from C++ and Python.
 pub fn export_cuda_files(matches: &ArgMatches) -> Result<(), Stop> {
-    let input = Input::one(matches)?;
+    let input = MechanismInput::select_one_mechanism(matches)?;
     let cx = &mut Diagnostics::new();
     let source = input.parse_source(cx);
     let mut source = input.result_without_errors(source, cx)?;
@@ -59,7 +59,7 @@ pub fn export_wgsl_files(matches: &ArgMatches) -> Result<(), Stop> {
         let why = "WGSL has no double precision: remove `--scalar double`, or use `linkwork export cuda`";
         return Err(Stop::Failure(why.to_string()));
     }
-    let input = Input::one(matches)?;
+    let input = MechanismInput::select_one_mechanism(matches)?;
     let cx = &mut Diagnostics::new();
     let source = input.parse_source(cx);
     let mut source = input.result_without_errors(source, cx)?;
@@ -79,7 +79,7 @@ pub fn export_wgsl_files(matches: &ArgMatches) -> Result<(), Stop> {
 }
 
 /// Requests the derivatives unless an option excludes them. Returns true for single precision.
-fn apply_code_export_options(source: &mut Source, matches: &ArgMatches) -> bool {
+fn apply_code_export_options(source: &mut ParsedSource, matches: &ArgMatches) -> bool {
     let description = &source.mechanism.description;
     let single = match text_option_value(matches, "scalar") {
         Some(scalar) => scalar == "float",
@@ -121,10 +121,10 @@ fn write_files_with_prefix(
 
 /// Writes a crate whose functions have an interface of plain arrays.
 pub fn export_library_crate(matches: &ArgMatches) -> Result<(), Stop> {
-    let input = Input::one(matches)?;
+    let input = MechanismInput::select_one_mechanism(matches)?;
     let given_prefix = text_option_value(matches, "prefix").map(ToString::to_string);
     let prefix =
-        identifier_from_name(&given_prefix.unwrap_or_else(|| snake_case_prefix(&input.declaration.name)));
+        identifier_from_name(&given_prefix.unwrap_or_else(|| to_snake_case(&input.declaration.name)));
     let made = library::generate_crate(&input, &prefix, matches)?;
     let folder = matches.get_one::<PathBuf>("out").cloned().unwrap_or_else(|| PathBuf::from(&prefix));
     for (path, text) in &made.files {
@@ -144,7 +144,7 @@ pub fn export_library_crate(matches: &ArgMatches) -> Result<(), Stop> {
 
 /// Writes the formatted Rust code that the attribute generates.
 pub fn export_rust_code(matches: &ArgMatches) -> Result<(), Stop> {
-    let input = Input::one(matches)?;
+    let input = MechanismInput::select_one_mechanism(matches)?;
     let cx = &mut Diagnostics::new();
     if let Some(source) = input.parse_source(cx) {
         linkwork_compiler::compile(&source, &linkwork_compiler::expr::Graph::new(), cx);

@@ -4,8 +4,8 @@ use crate::Stop;
 use crate::commands::text_option_value;
 use crate::export::checked_prefix;
 use crate::grid;
-use crate::input::Input;
-use crate::motion::Start;
+use crate::input::MechanismInput;
+use crate::motion::MotionStart;
 use crate::zip::Archive;
 use clap::ArgMatches;
 use linkwork_compiler::diag::Diagnostics;
@@ -18,13 +18,13 @@ use std::process::Command;
 
 /// Writes an FMU with sources, and with a binary for this machine if there is a C compiler.
 pub fn run_fmu_export(matches: &ArgMatches) -> Result<(), Stop> {
-    let input = Input::one(matches)?;
+    let input = MechanismInput::select_one_mechanism(matches)?;
     let prefix = checked_prefix(matches, "FMI")?;
     let cx = &mut Diagnostics::new();
     let source = input.parse_source(cx);
     let mut source = input.result_without_errors(source, cx)?;
     let graph = Graph::new();
-    let values = fmu_variable_data(&input, &graph, matches)?;
+    let values = fmu_start_data(&input, &graph, matches)?;
     let requests = &mut source.mechanism.requests;
     let is_kinematic = source.mechanism.description.inertias == InertiaOption::None;
     let has_derivatives = !is_kinematic && !matches.get_flag("no-derivatives");
@@ -53,7 +53,7 @@ pub fn run_fmu_export(matches: &ArgMatches) -> Result<(), Stop> {
     for (path, text) in
         files.files.iter().filter(|(path, _)| files.has_sources || !path.starts_with("sources"))
     {
-        archive.add(path, text.as_bytes())?;
+        archive.add_file(path, text.as_bytes())?;
     }
     if !matches.get_flag("no-binary") {
         compile_and_add_binary(&mut archive, &files, text_option_value(matches, "compiler"), library)?;
@@ -84,15 +84,15 @@ fn compile_and_add_binary(
     };
     let folder = binary_folder();
     let name = format!("{}{}", files.identifier, std::env::consts::DLL_SUFFIX);
-    archive.add(&format!("{folder}/{name}"), &binary)?;
+    archive.add_file(&format!("{folder}/{name}"), &binary)?;
     if let Some(library) = library.filter(|library| !is_static_library(library)) {
-        archive.add(&format!("{folder}/{LIBRARY_FILE}"), &std::fs::read(library)?)?;
+        archive.add_file(&format!("{folder}/{LIBRARY_FILE}"), &std::fs::read(library)?)?;
     }
     Ok(())
 }
 
 /// Start values of the variables, and generated functions that derivatives need.
-struct FmuVariableData {
+struct FmuStartData {
     start: StartValues,
     /// Whether functions are generated for derivatives of the accelerations by state and inputs.
     has_generated_derivatives: bool,
@@ -101,9 +101,9 @@ struct FmuVariableData {
 }
 
 /// Returns the start values of all variables; the initial state satisfies the constraints.
-fn fmu_variable_data(input: &Input, graph: &Graph, matches: &ArgMatches) -> Result<FmuVariableData, Stop> {
+fn fmu_start_data(input: &MechanismInput, graph: &Graph, matches: &ArgMatches) -> Result<FmuStartData, Stop> {
     let loaded = input.load_mechanism(graph)?;
-    let start = Start::new(&loaded, matches)?;
+    let start = MotionStart::new(&loaded, matches)?;
     if let Some(why) = start.reason_without_motion() {
         return Err(Stop::Failure(format!("`{}` cannot be an FMU: {why}", loaded.model.name)));
     }
@@ -120,7 +120,7 @@ fn fmu_variable_data(input: &Input, graph: &Graph, matches: &ArgMatches) -> Resu
     let states: Vec<usize> =
         loaded.source.mechanism.description.states.iter().map(|(_, index)| *index).collect();
     states.iter().zip(&start.x).for_each(|(k, x)| parameters[*k] = *x);
-    Ok(FmuVariableData {
+    Ok(FmuStartData {
         start: StartValues {
             parameters,
             q,
@@ -135,7 +135,7 @@ fn fmu_variable_data(input: &Input, graph: &Graph, matches: &ArgMatches) -> Resu
 }
 
 /// Returns the declaration of a mechanism in Rust, with the options of the command.
-fn mechanism_declaration_text(input: &Input) -> String {
+fn mechanism_declaration_text(input: &MechanismInput) -> String {
     format!("#[mechanism({})]\n{}", input.declaration.arguments, input.declaration.item)
 }
 
@@ -164,12 +164,12 @@ fn compile_shared_library(
     library: Option<&PathBuf>,
 ) -> Result<Option<Vec<u8>>, Stop> {
     let folder = std::env::temp_dir().join(format!("linkwork-fmu-{}", std::process::id()));
-    let done = compile_in_folder(&folder, files, compiler, library);
+    let done = compile_shared_library_in_folder(&folder, files, compiler, library);
     let _ = std::fs::remove_dir_all(&folder);
     done
 }
 
-fn compile_in_folder(
+fn compile_shared_library_in_folder(
     folder: &Path,
     files: &FmuFiles,
     compiler: Option<&str>,

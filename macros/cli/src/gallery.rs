@@ -57,15 +57,15 @@ fn page_of_line(list: &Path, line: &str) -> Result<(String, Page), Stop> {
 /// Makes the paths of a line relative to the folder of the list: the file, and the values of `--table` and
 /// `--meshes`.
 fn resolve_paths(words: &mut [String], folder: &Path) {
-    let resolve = |path: &str| folder.join(path).display().to_string();
+    let resolve_path_in_folder = |path: &str| folder.join(path).display().to_string();
     for k in 0..words.len() {
         let option = if k == 0 { "" } else { words[k - 1].as_str() };
         words[k] = match (option, words[k].split_once('=')) {
-            ("", _) | ("--meshes", _) => resolve(&words[k]),
-            ("--table", Some((name, file))) => format!("{name}={}", resolve(file)),
-            (_, Some(("--meshes", folder))) => format!("--meshes={}", resolve(folder)),
+            ("", _) | ("--meshes", _) => resolve_path_in_folder(&words[k]),
+            ("--table", Some((name, file))) => format!("{name}={}", resolve_path_in_folder(file)),
+            (_, Some(("--meshes", folder))) => format!("--meshes={}", resolve_path_in_folder(folder)),
             (_, Some(("--table", table))) => match table.split_once('=') {
-                Some((name, file)) => format!("--table={name}={}", resolve(file)),
+                Some((name, file)) => format!("--table={name}={}", resolve_path_in_folder(file)),
                 None => continue,
             },
             _ => continue,

@@ -3,15 +3,15 @@
 use crate::commands::text_option_value;
 use crate::{Stop, syntax};
 use clap::ArgMatches;
-use linkwork_compiler::derive::Output;
+use linkwork_compiler::derive::DerivationOutput;
 use linkwork_compiler::diag::{Diagnostic, Diagnostics};
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::import;
 use linkwork_compiler::mechanism::Model;
 use linkwork_compiler::passes::Passes;
 use linkwork_compiler::{
-    DeclaredStruct, Source, compile, compile_with_passes, derive_above_attribute_error,
-    mechanism_declarations, read_source, reject_reproducible_arithmetic,
+    DeclaredStruct, ParsedSource, compile, compile_with_passes, derive_above_attribute_error,
+    mechanism_declarations, parse_source_and_import, reject_reproducible_arithmetic,
 };
 use linkwork_jit::Robot;
 use proc_macro2::{Span, TokenStream};
@@ -19,7 +19,7 @@ use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
 /// Arguments and struct of a `#[mechanism]`, with the file and folder that contain it.
-pub struct Input {
+pub struct MechanismInput {
     /// Path of the file, as named on the command line.
     pub file: PathBuf,
     /// Struct of the mechanism with its attribute.
@@ -33,17 +33,17 @@ pub struct Input {
 /// Mechanism that was compiled without errors: source, model and generated functions.
 pub struct CompiledMechanism<'g> {
     /// Parsed source of the mechanism.
-    pub source: Source,
+    pub source: ParsedSource,
     /// Resolved model of the mechanism.
     pub model: Model<'g>,
     /// Generated functions of the mechanism.
-    pub output: Output,
+    pub output: DerivationOutput,
 }
 
 /// Mechanism whose functions were compiled to machine code.
 pub struct LoadedMechanism<'g> {
     /// Parsed source of the mechanism.
-    pub source: Source,
+    pub source: ParsedSource,
     /// Resolved model of the mechanism.
     pub model: Model<'g>,
     /// Mechanism whose functions can be called.
@@ -52,11 +52,11 @@ pub struct LoadedMechanism<'g> {
     pub equations: String,
 }
 
-impl Input {
+impl MechanismInput {
     /// Returns the mechanism that the command line selects: the only one of its file, or the one that
     /// `--struct` names.
-    pub fn one(matches: &ArgMatches) -> Result<Input, Stop> {
-        let mut all = Input::select_mechanisms(matches)?;
+    pub fn select_one_mechanism(matches: &ArgMatches) -> Result<MechanismInput, Stop> {
+        let mut all = MechanismInput::select_mechanisms(matches)?;
         if all.len() > 1 {
             let names: Vec<&str> = all.iter().map(|input| input.declaration.name.as_str()).collect();
             return Err(Stop::Failure(format!(
@@ -69,7 +69,7 @@ impl Input {
     }
 
     /// Returns all mechanisms of the file, or only the mechanism that `--struct` names.
-    pub fn select_mechanisms(matches: &ArgMatches) -> Result<Vec<Input>, Stop> {
+    pub fn select_mechanisms(matches: &ArgMatches) -> Result<Vec<MechanismInput>, Stop> {
         let file: &PathBuf =
             matches.get_one("file").ok_or_else(|| Stop::Failure("expected a file".to_string()))?;
         let more: TokenStream = text_option_value(matches, "with")
@@ -91,18 +91,18 @@ impl Input {
             }
         }
         for input in &mut found {
-            input.declaration.add(more.clone());
+            input.declaration.append_attribute_arguments(more.clone());
         }
         Ok(found)
     }
 
     /// Parses the arguments and the struct. Errors are added to `cx`.
-    pub fn parse_source(&self, cx: &mut Diagnostics) -> Option<Source> {
+    pub fn parse_source(&self, cx: &mut Diagnostics) -> Option<ParsedSource> {
         let DeclaredStruct { arguments, item, .. } = &self.declaration;
         if let Some(attribute) = self.declaration.derive_above_attribute_error {
-            cx.add(derive_above_attribute_error(attribute));
+            cx.add_diagnostic(derive_above_attribute_error(attribute));
         }
-        read_source(arguments.clone(), item.clone(), &self.folder, cx)
+        parse_source_and_import(arguments.clone(), item.clone(), &self.folder, cx)
     }
 
     /// Prints the compile errors, if there are any.
@@ -254,7 +254,7 @@ fn read_user_file(path: &Path) -> Result<String, Stop> {
 
 /// Returns the mechanisms of a Rust file, including those in inline modules, with paths relative to the
 /// package.
-fn mechanisms_of_rust_file(path: &Path) -> Result<Vec<Input>, Stop> {
+fn mechanisms_of_rust_file(path: &Path) -> Result<Vec<MechanismInput>, Stop> {
     let text = read_user_file(path)?;
     let found = mechanism_declarations(&text).map_err(|error| {
         Stop::Syntax(Box::new(SourceError {
@@ -273,7 +273,7 @@ fn mechanisms_of_rust_file(path: &Path) -> Result<Vec<Input>, Stop> {
         let why = format!("{}: there is no struct with `#[mechanism]`{note}", path.display());
         return Err(Stop::Failure(why));
     }
-    let input_from_declaration = |declaration| Input {
+    let input_from_declaration = |declaration| MechanismInput {
         declaration,
         file: path.to_path_buf(),
         folder: folder.clone(),
@@ -283,7 +283,7 @@ fn mechanisms_of_rust_file(path: &Path) -> Result<Vec<Input>, Stop> {
 }
 
 /// Returns a struct without fields whose arguments name a robot file.
-fn struct_of_robot_file(path: &Path) -> Result<Input, Stop> {
+fn struct_of_robot_file(path: &Path) -> Result<MechanismInput, Stop> {
     let is_known =
         path.extension().is_some_and(|end| ENDINGS.iter().any(|known| end.eq_ignore_ascii_case(known)));
     let unknown_file_type_failure = || {
@@ -298,8 +298,8 @@ fn struct_of_robot_file(path: &Path) -> Result<Input, Stop> {
     if !is_known && !["<robot", "<sdf", "<mujoco"].iter().any(|element| text.contains(element)) {
         return Err(unknown_file_type_failure());
     }
-    let declaration = DeclaredStruct::of_file(path, &text);
+    let declaration = DeclaredStruct::declaration_of_robot_file(path, &text);
     // The path remains as written, so that messages show it, and is resolved in the current directory.
     let folder = std::env::current_dir()?;
-    Ok(Input { declaration, file: path.to_path_buf(), folder, is_robot: true })
+    Ok(MechanismInput { declaration, file: path.to_path_buf(), folder, is_robot: true })
 }

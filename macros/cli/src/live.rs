@@ -1,7 +1,7 @@
 //! `linkwork view --live`: motions that a page simulates.
 
 use crate::Stop;
-use crate::motion::Start;
+use crate::motion::MotionStart;
 use linkwork_compiler::expr::Expr;
 use linkwork_compiler::lower::lower;
 use linkwork_jit::WebStart;
@@ -12,7 +12,7 @@ use linkwork_view::{Figure, Motion};
 /// # Errors
 ///
 /// The mechanism cannot be assembled, or pages cannot simulate it.
-pub fn live_motion(start: &Start<'_, '_>, figure: Figure) -> Result<Motion, Stop> {
+pub fn live_motion(start: &MotionStart<'_, '_>, figure: Figure) -> Result<Motion, Stop> {
     if let Some(why) = start.reason_without_motion() {
         return Err(Stop::Failure(format!("`{}` cannot be simulated: {why}", start.model.name)));
     }

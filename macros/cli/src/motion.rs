@@ -4,7 +4,7 @@ use crate::Stop;
 use crate::assemble::MechanismAssembler;
 use crate::grid;
 use crate::input::LoadedMechanism;
-use crate::table::Table;
+use crate::table::TimeSeriesTable;
 use clap::ArgMatches;
 use linkwork::integrate;
 use linkwork::nalgebra::IsometryMatrix3;
@@ -31,7 +31,7 @@ pub struct Sample {
 }
 
 /// Mechanism with its parameters, initial state and initial inputs.
-pub struct Start<'a, 'g> {
+pub struct MotionStart<'a, 'g> {
     /// Mechanism with the values of its parameters.
     pub robot: Robot,
     /// Model of the mechanism.
@@ -77,9 +77,9 @@ pub fn normalise_quaternions(model: &Model<'_>, q: &mut [f64]) -> Result<(), Sto
     Ok(())
 }
 
-impl<'a, 'g> Start<'a, 'g> {
+impl<'a, 'g> MotionStart<'a, 'g> {
     /// Reads the parameters, the initial state and the inputs from `--set`, `--guess` and `--table`.
-    pub fn new(loaded: &'a LoadedMechanism<'g>, matches: &ArgMatches) -> Result<Start<'a, 'g>, Stop> {
+    pub fn new(loaded: &'a LoadedMechanism<'g>, matches: &ArgMatches) -> Result<MotionStart<'a, 'g>, Stop> {
         let LoadedMechanism { source, model, robot, .. } = loaded;
         let mut robot = robot.clone();
         let prefixed_velocity_names = |list: &[(String, linkwork_compiler::diag::Place)]| -> Vec<String> {
@@ -154,7 +154,7 @@ impl<'a, 'g> Start<'a, 'g> {
         robot.validate()?;
         normalise_quaternions(model, &mut q)?;
         let states = states.into_iter().map(|(name, _)| name).collect();
-        Ok(Start { robot, model, states, q, v, x, u, given: known, is_guessed })
+        Ok(MotionStart { robot, model, states, q, v, x, u, given: known, is_guessed })
     }
 
     /// Returns the reason why the mechanism has no motion, if any.
@@ -282,14 +282,16 @@ impl<'a, 'g> Start<'a, 'g> {
                 // The state shortly before the failure.
                 let last = samples.last().map(|last| (last.q.clone(), last.t));
                 let mut before = Vec::new();
-                let mut near = || {
+                let mut sample_shortly_before_failure = || {
                     let (_, from) = last.as_ref()?;
                     let t = time_of_failure(&error)?;
                     let to = from + (t - from) * (1.0 - 1e-3);
                     let _ = simulate_from_state(&q, &state, to, &mut before);
                     before.pop()
                 };
-                return Err(self.motion_failure(&error, near().map(|sample| sample.q)));
+                return Err(
+                    self.motion_failure(&error, sample_shortly_before_failure().map(|sample| sample.q))
+                );
             }
         }
         Ok(samples)
@@ -329,7 +331,7 @@ impl<'a, 'g> Start<'a, 'g> {
         let m = MechanismAssembler { robot: &self.robot, model: self.model };
         let (name, [in_q, in_v]) = (&self.model.name, &self.given);
         let has_singular_speeds = |q: &[f64]| self.robot.regularity_of_speeds(q) <= SINGULAR;
-        if !has_singular_speeds(&self.q) && !m.has_positive_definite_inertia(&self.q)? {
+        if !has_singular_speeds(&self.q) && !m.has_positive_definite_constrained_inertia(&self.q)? {
             return Err(Stop::Failure(format!(
                 "the mass matrix of `{name}` is singular at the beginning: with these parameters a moving \
                  body has no inertia"
@@ -416,7 +418,7 @@ impl<'a, 'g> Start<'a, 'g> {
     /// Returns the times of the samples of an input file, and the inputs at each of them.
     fn read_inputs(&self, matches: &ArgMatches) -> Result<(Vec<f64>, Vec<f64>), Stop> {
         let Some(path) = matches.get_one::<PathBuf>("inputs") else { return Ok((vec![0.0], self.u.clone())) };
-        let table = Table::read_table(path)?;
+        let table = TimeSeriesTable::read_table(path)?;
         let names: Vec<String> = self.model.inputs.iter().map(|(name, _)| format!("u.{name}")).collect();
         // Other columns of a log are ignored.
         let unknown = table.columns.iter().find(|(name, _)| name.starts_with("u.") && !names.contains(name));
@@ -441,11 +443,11 @@ impl<'a, 'g> Start<'a, 'g> {
             };
             return Err(Stop::Failure(format!("{}: {expected}", path.display())));
         }
-        let index_pairs_of_row = |k: usize| (0..columns.len()).map(move |i| (i, k));
+        let column_and_row_indices = |k: usize| (0..columns.len()).map(move |i| (i, k));
         let input_value_in_table_row =
             |(i, k): (usize, usize)| columns[i].map_or(self.u[i], |column| column[k]);
         let values =
-            (0..table.times.len()).flat_map(index_pairs_of_row).map(input_value_in_table_row).collect();
+            (0..table.times.len()).flat_map(column_and_row_indices).map(input_value_in_table_row).collect();
         Ok((table.times.clone(), values))
     }
 }

@@ -11,20 +11,24 @@ const WORDS: [&str; 24] = [
 
 /// Field names of a converted struct, by the names in the robot file.
 #[derive(Clone, Default)]
-pub struct Names {
+pub struct StructFieldNames {
     of: BTreeMap<String, String>,
     taken: BTreeSet<String>,
 }
 
-impl Names {
+impl StructFieldNames {
     /// Adds names of one kind. A name that is already used gets the kind as a suffix.
-    pub fn add<'a>(&mut self, names: impl Iterator<Item = &'a str>, kind: &str) -> Names {
+    pub fn add_names_of_kind<'a>(
+        &mut self,
+        names: impl Iterator<Item = &'a str>,
+        kind: &str,
+    ) -> StructFieldNames {
         let mut of = BTreeMap::new();
         for name in names {
             let field = if name == GROUND { name.to_string() } else { self.unused_field_name(name, kind) };
             of.insert(name.to_string(), field);
         }
-        Names { of, taken: BTreeSet::new() }
+        StructFieldNames { of, taken: BTreeSet::new() }
     }
 
     /// Returns a field name that is not used yet.
@@ -61,14 +65,15 @@ impl Names {
 
 #[cfg(test)]
 mod tests {
-    use super::Names;
+    use super::StructFieldNames;
 
     #[test]
     fn robot_names_become_distinct_rust_fields() {
-        let mut taken = Names::default();
-        let links = taken.add(["ground", "Hand-left", "x", "2nd", "fn", "hand left"].into_iter(), "link");
-        let joints = taken.add(["Hand-left", "é"].into_iter(), "joint");
-        let field_names_of = |names: &Names, list: &[&str]| {
+        let mut taken = StructFieldNames::default();
+        let links = taken
+            .add_names_of_kind(["ground", "Hand-left", "x", "2nd", "fn", "hand left"].into_iter(), "link");
+        let joints = taken.add_names_of_kind(["Hand-left", "é"].into_iter(), "joint");
+        let field_names_of = |names: &StructFieldNames, list: &[&str]| {
             list.iter().map(|name| names.field_name_or_original(name)).collect::<Vec<_>>()
         };
         let of_links = field_names_of(&links, &["ground", "Hand-left", "x", "2nd", "fn", "hand left"]);

@@ -11,7 +11,7 @@ pub fn create_package(matches: &ArgMatches) -> Result<(), Stop> {
     let folder: &PathBuf =
         matches.get_one("folder").ok_or_else(|| Stop::Failure("expected a folder".to_string()))?;
     let name = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    check_name(&name)?;
+    check_package_name(&name)?;
     if folder.exists() {
         return Err(Stop::Failure(format!("{} already exists", folder.display())));
     }
@@ -31,7 +31,7 @@ pub fn create_package(matches: &ArgMatches) -> Result<(), Stop> {
 }
 
 /// Checks that Cargo accepts the name of a package.
-fn check_name(name: &str) -> Result<(), Stop> {
+fn check_package_name(name: &str) -> Result<(), Stop> {
     let is_name_character = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
     let is_word = syn::parse_str::<syn::Ident>(&name.replace('-', "_")).is_err();
     if !name.starts_with(|c: char| c.is_ascii_alphabetic()) || !name.chars().all(is_name_character) || is_word

@@ -1,9 +1,9 @@
 //! `linkwork show`: prints the compiled model of a mechanism.
 
 use crate::Stop;
-use crate::input::{CompiledMechanism, Input};
+use crate::input::{CompiledMechanism, MechanismInput};
 use clap::ArgMatches;
-use linkwork_compiler::derive::Output;
+use linkwork_compiler::derive::DerivationOutput;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::mechanism::Model;
 use serde_json::{Value, json};
@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 pub fn run_show(matches: &ArgMatches) -> Result<(), Stop> {
     let as_json = matches.get_flag("json");
     let mut all = Vec::new();
-    for input in &Input::select_mechanisms(matches)? {
+    for input in &MechanismInput::select_mechanisms(matches)? {
         let graph = Graph::new();
         let CompiledMechanism { source, model, output } = input.compile_mechanism(&graph)?;
         let shown =
@@ -29,15 +29,15 @@ pub fn run_show(matches: &ArgMatches) -> Result<(), Stop> {
 
 struct ShownMechanism<'a, 'g> {
     model: &'a Model<'g>,
-    output: &'a Output,
+    output: &'a DerivationOutput,
     structure: Vec<String>,
 }
 
 /// Printed list: its title, its JSON key, and the names with their units.
-type PrintedList<'a> = (&'static str, &'static str, Vec<&'a str>, &'a [String]);
+type NameListWithUnits<'a> = (&'static str, &'static str, Vec<&'a str>, &'a [String]);
 
 impl ShownMechanism<'_, '_> {
-    fn lists_of_names(&self) -> Vec<PrintedList<'_>> {
+    fn lists_of_names(&self) -> Vec<NameListWithUnits<'_>> {
         let m = self.model;
         fn names_as_str(list: &[String]) -> Vec<&str> {
             list.iter().map(String::as_str).collect()

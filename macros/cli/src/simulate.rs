@@ -2,18 +2,18 @@
 
 use crate::Stop;
 use crate::export::write_output;
-use crate::input::Input;
-use crate::motion::{Sample, Start};
+use crate::input::MechanismInput;
+use crate::motion::{MotionStart, Sample};
 use clap::ArgMatches;
 use linkwork_compiler::expr::Graph;
 use linkwork_view::{Instant, Names, mcap_of};
 use std::path::PathBuf;
 
 pub fn run_simulate(matches: &ArgMatches) -> Result<(), Stop> {
-    let input = Input::one(matches)?;
+    let input = MechanismInput::select_one_mechanism(matches)?;
     let graph = Graph::new();
     let loaded = input.load_mechanism(&graph)?;
-    let start = Start::new(&loaded, matches)?;
+    let start = MotionStart::new(&loaded, matches)?;
     let samples = start.simulate_motion(matches)?;
     match matches.get_one::<PathBuf>("out") {
         Some(path) if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mcap")) => {
@@ -26,7 +26,7 @@ pub fn run_simulate(matches: &ArgMatches) -> Result<(), Stop> {
 }
 
 /// Returns the MCAP log of a motion with the placements of all frames.
-fn mcap_log_bytes(start: &Start<'_, '_>, samples: Vec<Sample>) -> Result<Vec<u8>, Stop> {
+fn mcap_log_bytes(start: &MotionStart<'_, '_>, samples: Vec<Sample>) -> Result<Vec<u8>, Stop> {
     let model = start.model;
     let frames: Vec<&str> = model.frames.iter().map(|frame| frame.name.as_str()).collect();
     let configuration: Vec<&str> = model.configuration.iter().map(String::as_str).collect();
@@ -45,7 +45,7 @@ fn mcap_log_bytes(start: &Start<'_, '_>, samples: Vec<Sample>) -> Result<Vec<u8>
     Ok(mcap_of(&names, instants)?)
 }
 
-fn csv_log_text(start: &Start<'_, '_>, samples: &[Sample]) -> String {
+fn csv_log_text(start: &MotionStart<'_, '_>, samples: &[Sample]) -> String {
     let model = start.model;
     let mut head = vec!["t".to_string()];
     head.extend(model.configuration.iter().map(|name| format!("q.{name}")));

@@ -21,7 +21,7 @@ pub fn syntax_error_of_text(text: &str, error: &syn::Error) -> SourceError {
 /// Returns the position, message and notes for a text that cannot be split into tokens beyond `at`: its
 /// brackets do not match, or it has characters that begin no token.
 fn describe_unbalanced_text(text: &str, at: LineColumn) -> (LineColumn, String, Vec<String>) {
-    let (before, found) = text.split_at(index(text, at));
+    let (before, found) = text.split_at(byte_index_of_position(text, at));
     let found = found.chars().next();
     match found {
         Some(closing @ (')' | ']' | '}')) => match TokenStream::from_str(before) {
@@ -33,7 +33,7 @@ fn describe_unbalanced_text(text: &str, at: LineColumn) -> (LineColumn, String, 
             // The innermost bracket that is open before `at` does not match.
             Err(lexed) => {
                 let open = lexed.span().start();
-                let bracket = text[index(text, open)..].chars().next().unwrap_or('(');
+                let bracket = text[byte_index_of_position(text, open)..].chars().next().unwrap_or('(');
                 let note =
                     format!("`{bracket}` of line {}, column {} is not closed", open.line, open.column + 1);
                 (
@@ -67,7 +67,7 @@ fn find_misaligned_brace(text: &str) -> Option<LineColumn> {
         match TokenStream::from_str(&whole) {
             Ok(tokens) => break tokens,
             Err(lexed) => {
-                let bracket = whole[index(&whole, lexed.span().start())..].chars().next()?;
+                let bracket = whole[byte_index_of_position(&whole, lexed.span().start())..].chars().next()?;
                 if !"([{".contains(bracket) || whole.len() > text.len() + 64 {
                     return None;
                 }
@@ -135,7 +135,7 @@ fn matching_closing_bracket(opening: char) -> char {
 }
 
 /// Returns the byte index of a position, whose columns count characters.
-fn index(text: &str, at: LineColumn) -> usize {
+fn byte_index_of_position(text: &str, at: LineColumn) -> usize {
     let text = text.strip_prefix('\u{feff}').map_or((text, 0), |rest| (rest, '\u{feff}'.len_utf8()));
     let (text, skipped) = text;
     let start: usize = text.split_inclusive('\n').take(at.line - 1).map(str::len).sum();

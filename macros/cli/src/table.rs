@@ -5,21 +5,21 @@ use linkwork_compiler::import::with_standard_whitespace;
 use std::path::Path;
 
 /// Named columns of numbers, for times that do not decrease.
-pub struct Table {
+pub struct TimeSeriesTable {
     /// Times of the rows of the CSV file, s.
     pub times: Vec<f64>,
     /// Columns of the CSV file other than the time, with their names.
     pub columns: Vec<(String, Vec<f64>)>,
 }
 
-impl Table {
+impl TimeSeriesTable {
     /// Reads a CSV file, one column of which must be `t`.
-    pub fn read_table(path: &Path) -> Result<Table, Stop> {
+    pub fn read_table(path: &Path) -> Result<TimeSeriesTable, Stop> {
         let text = read_spreadsheet_text(path).map_err(Stop::Failure)?;
-        Table::parse_csv(&text).map_err(|why| Stop::Failure(format!("{}: {why}", path.display())))
+        TimeSeriesTable::parse_csv(&text).map_err(|why| Stop::Failure(format!("{}: {why}", path.display())))
     }
 
-    fn parse_csv(text: &str) -> Result<Table, String> {
+    fn parse_csv(text: &str) -> Result<TimeSeriesTable, String> {
         let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
         let head = lines.next().map(|(_, line)| split_csv_fields(line)).unwrap_or_default();
         let time = head.iter().position(|name| name == "t").ok_or_else(|| {
@@ -52,7 +52,7 @@ impl Table {
         }
         match times.windows(2).position(|pair| pair[1] < pair[0]) {
             Some(k) => Err(format!("the times decrease after {} s", times[k])),
-            None => Ok(Table { times, columns }),
+            None => Ok(TimeSeriesTable { times, columns }),
         }
     }
 
@@ -87,7 +87,7 @@ fn split_csv_fields(line: &str) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Table, split_csv_fields};
+    use super::{TimeSeriesTable, split_csv_fields};
 
     #[test]
     fn quoted_csv_cells_may_contain_commas() {
@@ -104,7 +104,7 @@ mod tests {
             "\u{feff}\"t\",u.a\n0,1\n2,3",
         ] {
             std::fs::write(&file, text).expect("a file");
-            let table = Table::read_table(&file).unwrap_or_else(|_| panic!("{text:?}"));
+            let table = TimeSeriesTable::read_table(&file).unwrap_or_else(|_| panic!("{text:?}"));
             assert_eq!(
                 (table.times.as_slice(), table.column_by_name("u.a")),
                 (&[0.0, 2.0][..], Some(&[1.0, 3.0][..]))
@@ -124,7 +124,7 @@ mod tests {
             ("t\n1\n0\n", "decrease"),
             ("t,a,a\n0,1,2\n", "two columns `a`"),
         ] {
-            assert!(Table::parse_csv(text).is_err_and(|why| why.contains(part)), "{text}");
+            assert!(TimeSeriesTable::parse_csv(text).is_err_and(|why| why.contains(part)), "{text}");
         }
     }
 }

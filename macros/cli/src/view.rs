@@ -1,11 +1,11 @@
 //! `linkwork view`: writes an HTML page that shows a motion.
 
 use crate::Stop;
-use crate::input::{Input, LoadedMechanism};
+use crate::input::{LoadedMechanism, MechanismInput};
 use crate::library::doc_paragraphs;
 use crate::live;
-use crate::motion::{Start, normalise_quaternions};
-use crate::table::Table;
+use crate::motion::{MotionStart, normalise_quaternions};
+use crate::table::TimeSeriesTable;
 use clap::ArgMatches;
 use linkwork_compiler::export::without_doc_links;
 use linkwork_compiler::expr::Graph;
@@ -14,7 +14,7 @@ use linkwork_view::{Figure, Motion, Page};
 use std::path::{Path, PathBuf};
 
 /// Plotted state: time, configuration, states of first order, and inputs if they are recorded.
-type State = (f64, Vec<f64>, Vec<f64>, Vec<f64>);
+type PlottedState = (f64, Vec<f64>, Vec<f64>, Vec<f64>);
 
 /// Maximum number of coordinates that are plotted by default.
 const PLOTTED: usize = 12;
@@ -32,14 +32,14 @@ pub fn run_view(matches: &ArgMatches) -> Result<(), Stop> {
 
 /// Returns the name of the mechanism and the HTML page that shows it.
 pub fn mechanism_name_and_page(matches: &ArgMatches) -> Result<(String, Page), Stop> {
-    let mut input = Input::one(matches)?;
+    let mut input = MechanismInput::select_one_mechanism(matches)?;
     if !input.declaration.arguments.clone().into_iter().any(|token| token.to_string() == "drawing") {
-        input.declaration.add(quote::quote!(drawing));
+        input.declaration.append_attribute_arguments(quote::quote!(drawing));
     }
     let graph = Graph::new();
     let loaded = input.load_mechanism(&graph)?;
     let LoadedMechanism { source, model, .. } = &loaded;
-    let start = Start::new(&loaded, matches)?;
+    let start = MotionStart::new(&loaded, matches)?;
     let about = without_doc_links(&doc_paragraphs(&source.mechanism.shell.attributes).join("\n\n"));
     let page = Page::new(&input.declaration.name).text(&about);
     let figure = add_meshes(declared_drawing(&start, model), &input, matches)?;
@@ -52,7 +52,7 @@ pub fn mechanism_name_and_page(matches: &ArgMatches) -> Result<(String, Page), S
 
 /// Returns the recorded motion of a log file, or the motion of a simulation.
 fn recorded_or_simulated_motion(
-    start: &Start<'_, '_>,
+    start: &MotionStart<'_, '_>,
     figure: Figure,
     matches: &ArgMatches,
 ) -> Result<Motion, Stop> {
@@ -84,8 +84,10 @@ fn recorded_or_simulated_motion(
     }
     if states.len() > 1 && model.nu() <= PLOTTED {
         // Constant inputs are not plotted.
-        let values = |k: usize| states.iter().map(|(.., u)| u.get(k).copied().unwrap_or(0.0)).collect();
-        let curves = named_curves(model.inputs.iter().map(|(name, _)| name), &model.units.inputs, values);
+        let values_of_input =
+            |k: usize| states.iter().map(|(.., u)| u.get(k).copied().unwrap_or(0.0)).collect();
+        let curves =
+            named_curves(model.inputs.iter().map(|(name, _)| name), &model.units.inputs, values_of_input);
         if curves.iter().any(|(.., values)| values.iter().any(|value| *value != values[0])) {
             motion = motion.plots("Inputs", curves)?;
         }
@@ -94,7 +96,7 @@ fn recorded_or_simulated_motion(
 }
 
 /// Returns the drawing with the meshes that are found, and prints the paths of the others.
-fn add_meshes(mut figure: Figure, input: &Input, matches: &ArgMatches) -> Result<Figure, Stop> {
+fn add_meshes(mut figure: Figure, input: &MechanismInput, matches: &ArgMatches) -> Result<Figure, Stop> {
     let beside = input.file.parent().map(Path::to_path_buf);
     match matches.get_one::<PathBuf>("meshes") {
         Some(folder) => {
@@ -124,14 +126,15 @@ fn add_meshes(mut figure: Figure, input: &Input, matches: &ArgMatches) -> Result
 }
 
 /// Reads the states of a log: times, configurations, first-order states and inputs.
-fn states_of_log(path: &Path, start: &Start<'_, '_>) -> Result<Vec<State>, Stop> {
-    let table = Table::read_table(path)?;
-    let column = |name: &String| {
+fn states_of_log(path: &Path, start: &MotionStart<'_, '_>) -> Result<Vec<PlottedState>, Stop> {
+    let table = TimeSeriesTable::read_table(path)?;
+    let column_of_coordinate = |name: &String| {
         let name = format!("q.{name}");
         let found = table.column_by_name(&name);
         found.ok_or_else(|| Stop::Failure(format!("{}: there is no column `{name}`", path.display())))
     };
-    let columns = start.model.configuration.iter().map(column).collect::<Result<Vec<_>, Stop>>()?;
+    let columns =
+        start.model.configuration.iter().map(column_of_coordinate).collect::<Result<Vec<_>, Stop>>()?;
     // Inputs, and states, are used if the log has all of them; some of them alone are an error.
     let columns_if_all_present = |names: Vec<String>| {
         let found: Vec<Option<&[f64]>> = names.iter().map(|name| table.column_by_name(name)).collect();
@@ -166,7 +169,7 @@ fn named_curves<'n>(
 }
 
 /// Returns the declared drawing with the values of the parameters.
-fn declared_drawing(start: &Start<'_, '_>, model: &mechanism::Model<'_>) -> Figure {
+fn declared_drawing(start: &MotionStart<'_, '_>, model: &mechanism::Model<'_>) -> Figure {
     let (mut pieces, mut numbers) = (Vec::new(), Vec::new());
     for piece in &model.drawing {
         pieces.push(linkwork_jit::drawn(piece, numbers.len()));

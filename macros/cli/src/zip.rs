@@ -24,7 +24,7 @@ impl Archive {
     ///
     /// # Errors
     /// The file or the archive is too large for the format.
-    pub fn add(&mut self, path: &str, bytes: &[u8]) -> Result<(), Stop> {
+    pub fn add_file(&mut self, path: &str, bytes: &[u8]) -> Result<(), Stop> {
         let archive_size_error = |_| Stop::Failure(format!("`{path}` is too large for an archive"));
         let size = u32::try_from(bytes.len()).map_err(archive_size_error)?;
         let offset = u32::try_from(self.contents.len()).map_err(archive_size_error)?;

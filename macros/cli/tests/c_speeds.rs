@@ -17,12 +17,12 @@ fn format_c_array(name: &str, numbers: &[f64]) -> String {
 }
 
 /// A function of the exported code, its call, and the results in Rust.
-type ExportedEntry = (&'static str, String, Vec<f64>);
+type CallWithExpectedResults = (&'static str, String, Vec<f64>);
 
 /// Exports the mechanism in the given arithmetic, compiles it with the given flags, and returns the numbers
 /// that the program prints.
 fn export_compile_and_run(
-    entries: &[ExportedEntry],
+    entries: &[CallWithExpectedResults],
     given: &str,
     arithmetic: &str,
     flags: &[&str],
@@ -75,7 +75,7 @@ fn concatenate_results(parts: &[&[f64]]) -> Vec<f64> {
 }
 
 /// Returns the functions with their results in Rust, and the declarations of their arguments in C.
-fn exported_functions() -> (Vec<ExportedEntry>, String) {
+fn exported_functions() -> (Vec<CallWithExpectedResults>, String) {
     let m = Juggler { axial: 0.7 };
     const N: usize = Juggler::NV;
     let sine_sample_vector =

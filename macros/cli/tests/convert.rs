@@ -1,26 +1,30 @@
 //! Tests of the conversion of robot files to structs with the same equations of motion.
 
-use linkwork_compiler::derive::Output;
+use linkwork_compiler::derive::DerivationOutput;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::mechanism::{Model, Quantity};
-use linkwork_compiler::{Source, compile, read_source};
+use linkwork_compiler::{ParsedSource, compile, parse_source_and_import};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Compiles a struct with arguments of the attribute, and passes the result to `test`.
-fn with_compiled_struct<T>(arguments: &str, item: &str, test: impl FnOnce(&Model<'_>, &Output) -> T) -> T {
+fn compile_struct_and_test<T>(
+    arguments: &str,
+    item: &str,
+    test: impl FnOnce(&Model<'_>, &DerivationOutput) -> T,
+) -> T {
     let cx = &mut Diagnostics::new();
-    let source: Option<Source> =
-        read_source(arguments.parse().unwrap(), item.parse().unwrap(), Path::new("/"), cx);
+    let source: Option<ParsedSource> =
+        parse_source_and_import(arguments.parse().unwrap(), item.parse().unwrap(), Path::new("/"), cx);
     let graph = Graph::new();
     let made = source.and_then(|source| compile(&source, &graph, cx));
-    let (model, output) = made.unwrap_or_else(|| panic!("{:?}", cx.messages()));
+    let (model, output) = made.unwrap_or_else(|| panic!("{:?}", cx.full_message_texts()));
     test(&model, &output)
 }
 
 /// Evaluates a function at a state that depends on the indices of its entries.
-fn evaluate_at_sample_state(model: &Model<'_>, output: &Output, function: &str) -> Vec<f64> {
+fn evaluate_at_sample_state(model: &Model<'_>, output: &DerivationOutput, function: &str) -> Vec<f64> {
     let sample_value = |k: usize, shift: f64| (1.7 * k as f64 + shift).sin();
     let sample_coordinate =
         |k: usize| match model.configuration.get(k).and_then(|name| name.rsplit('.').next()) {
@@ -87,13 +91,13 @@ fn check_conversion_with_notes(format: &str, file: &Path, with: &str, notes: &[&
     let given = format!("{format} = {:?}, {with}", file.display().to_string());
     let functions =
         ["mass_matrix", "inverse_dynamics", "forward_dynamics", "generalized_forces", "potential_energy"];
-    let evaluate_all_functions = |model: &Model<'_>, output: &Output| {
+    let evaluate_all_functions = |model: &Model<'_>, output: &DerivationOutput| {
         functions.map(|function| evaluate_at_sample_state(model, output, function))
     };
-    let expected = with_compiled_struct(&given, "struct Robot;", |m, o| {
+    let expected = compile_struct_and_test(&given, "struct Robot;", |m, o| {
         (m.nq(), m.nu(), count_frames(m), m.limits.len(), evaluate_all_functions(m, o))
     });
-    let found = with_compiled_struct(&arguments, &item, |m, o| {
+    let found = compile_struct_and_test(&arguments, &item, |m, o| {
         (m.nq(), m.nu(), count_frames(m), m.limits.len(), evaluate_all_functions(m, o))
     });
     assert_eq!((found.0, found.1), (expected.0, expected.1), "{}", file.display());
@@ -204,7 +208,7 @@ fn robot_files_convert_with_equal_dynamics() {
     ] {
         let file = repository_folder().join(file);
         let given = format!("{format} = {:?}, {with}", file.display().to_string());
-        let sizes_and_dynamics_values = |model: &Model<'_>, output: &Output| {
+        let sizes_and_dynamics_values = |model: &Model<'_>, output: &DerivationOutput| {
             (
                 model.nq(),
                 model.nu(),
@@ -212,9 +216,9 @@ fn robot_files_convert_with_equal_dynamics() {
                     .map(|function| evaluate_at_sample_state(model, output, function)),
             )
         };
-        let expected = with_compiled_struct(&given, "struct Robot;", sizes_and_dynamics_values);
+        let expected = compile_struct_and_test(&given, "struct Robot;", sizes_and_dynamics_values);
         let (arguments, item) = split_attribute_and_struct(&convert_file(&file, with).0);
-        let found = with_compiled_struct(&arguments, &item, sizes_and_dynamics_values);
+        let found = compile_struct_and_test(&arguments, &item, sizes_and_dynamics_values);
         assert_eq!((found.0, found.1), (expected.0, expected.1), "{}", file.display());
         for (a, b) in found.2.iter().zip(&expected.2) {
             let size = b.iter().fold(1.0, |size: f64, x| size.max(x.abs()));
@@ -246,13 +250,13 @@ fn names_shared_by_link_and_joint_are_resolved() {
     );
     let given = format!("mjcf = {:?}", file.display().to_string());
     let functions = ["mass_matrix", "bias_forces", "potential_energy", "constraint_residuals"];
-    let evaluate_all_functions = |model: &Model<'_>, output: &Output| {
+    let evaluate_all_functions = |model: &Model<'_>, output: &DerivationOutput| {
         functions.map(|function| evaluate_at_sample_state(model, output, function))
     };
-    let expected = with_compiled_struct(&given, "struct Robot;", evaluate_all_functions);
+    let expected = compile_struct_and_test(&given, "struct Robot;", evaluate_all_functions);
     let (code, _) = convert_file(&file, "");
     let (arguments, item) = split_attribute_and_struct(&code);
-    for (a, b) in with_compiled_struct(&arguments, &item, evaluate_all_functions).iter().zip(&expected) {
+    for (a, b) in compile_struct_and_test(&arguments, &item, evaluate_all_functions).iter().zip(&expected) {
         assert!(a.len() == b.len() && !a.is_empty(), "{a:?} {b:?}");
         assert!(a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-9 * b.abs().max(1.0)), "{a:?} {b:?}");
     }
@@ -287,13 +291,15 @@ fn negative_damping_and_multi_joint_elements_are_converted() {
     );
     let notes = ["acts on a constant length", "acts on a body that is fixed to the ground"];
     check_conversion_with_notes("mjcf", &file, "", &notes);
-    let inertia = |xx: &str, xy: &str| {
+    let inertial_element = |xx: &str, xy: &str| {
         format!(
             "<inertial><mass value='2'/><inertia ixx='{xx}' iyy='1' izz='1' ixy='{xy}' ixz='0' iyz='0'/>\
              </inertial>"
         )
     };
-    for (name, inertia) in [("diagonal.urdf", inertia("-0.1", "0")), ("full.urdf", inertia("-0.1", "-0.2"))] {
+    for (name, inertia) in
+        [("diagonal.urdf", inertial_element("-0.1", "0")), ("full.urdf", inertial_element("-0.1", "-0.2"))]
+    {
         let file = write_test_file(
             name,
             &format!(

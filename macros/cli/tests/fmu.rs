@@ -60,11 +60,16 @@ struct Fmu {
 impl Fmu {
     /// Exports a mechanism, and compiles it without warnings. Returns `None` without a C compiler.
     fn new(name: &str, arguments: &[&str]) -> Option<Fmu> {
-        Fmu::with_importer(name, arguments, "importer.c", &[])
+        Fmu::export_and_compile_with_importer(name, arguments, "importer.c", &[])
     }
 
     /// Exports a mechanism, and compiles it with an importer and with more options of the compiler.
-    fn with_importer(name: &str, arguments: &[&str], importer: &str, more: &[&str]) -> Option<Fmu> {
+    fn export_and_compile_with_importer(
+        name: &str,
+        arguments: &[&str],
+        importer: &str,
+        more: &[&str],
+    ) -> Option<Fmu> {
         let compiler = find_c_compiler()?;
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("fmu").join(name);
         fs::create_dir_all(folder.join("sources")).expect("a folder of the tests");
@@ -97,12 +102,16 @@ impl Fmu {
     fn output_lines_of_importer(&self, kind: &str, numbers: [f64; 3]) -> Vec<String> {
         let numbers = numbers.map(|x| x.to_string());
         let [a, b, c] = numbers.each_ref().map(String::as_str);
-        self.program_lines(&[kind, self.read_instantiation_token(), a, b, c])
+        self.output_lines_of_program(&[kind, self.read_instantiation_token(), a, b, c])
     }
 
     /// Runs the compiled importer that calls functions at random, and returns the lines that it prints.
     fn random_call_output_lines(&self, variables: usize, rounds: usize) -> Vec<String> {
-        self.program_lines(&[self.read_instantiation_token(), &variables.to_string(), &rounds.to_string()])
+        self.output_lines_of_program(&[
+            self.read_instantiation_token(),
+            &variables.to_string(),
+            &rounds.to_string(),
+        ])
     }
 
     /// Returns the instantiation token of the model.
@@ -111,7 +120,7 @@ impl Fmu {
         rest.split('"').next().unwrap_or_default()
     }
 
-    fn program_lines(&self, arguments: &[&str]) -> Vec<String> {
+    fn output_lines_of_program(&self, arguments: &[&str]) -> Vec<String> {
         let output = Command::new(&self.program).args(arguments).output().expect("the program starts");
         let text = String::from_utf8_lossy(&output.stdout).into_owned();
         assert!(output.status.success(), "{text}{}", String::from_utf8_lossy(&output.stderr));

@@ -17,13 +17,13 @@ impl Random {
         self.0 >> 33
     }
 
-    fn index_below(&mut self, n: u64) -> u64 {
+    fn random_index_below(&mut self, n: u64) -> u64 {
         self.random_bits() % n
     }
 
     /// Returns a random number between bounds, rounded to three decimals.
-    fn number_between(&mut self, low: f64, high: f64) -> f64 {
-        let x = low + (high - low) * self.index_below(10_000) as f64 / 1e4;
+    fn random_number_between(&mut self, low: f64, high: f64) -> f64 {
+        let x = low + (high - low) * self.random_index_below(10_000) as f64 / 1e4;
         (x * 1e3).round() / 1e3
     }
 }
@@ -73,8 +73,8 @@ fn simulate_to_log(here: &Path, name: &str, text: &str, set: &[String], more: &[
 /// Returns a chain of bodies on pins and sleeves with springs, or a slider-crank, with its coordinates.
 fn random_linkage(random: &mut Random) -> (String, Vec<String>, bool) {
     let mut text = String::new();
-    if random.index_below(4) == 0 {
-        let (r, l) = (random.number_between(0.2, 0.5), random.number_between(0.9, 1.5));
+    if random.random_index_below(4) == 0 {
+        let (r, l) = (random.random_number_between(0.2, 0.5), random.random_number_between(0.9, 1.5));
         let _ = write!(
             text,
             "    #[body(mass = 1.2, com = {r} / 2 * x, inertia = rod(1.2, {r}, x))]\n    crank: Body,
@@ -87,19 +87,19 @@ fn random_linkage(random: &mut Random) -> (String, Vec<String>, bool) {
         );
         return (text, (0..3).map(|k| format!("j{k}")).collect(), true);
     }
-    let n = 1 + random.index_below(3);
+    let n = 1 + random.random_index_below(3);
     for k in 0..n {
-        let (mass, length) = (random.number_between(0.5, 3.0), random.number_between(0.3, 1.2));
+        let (mass, length) = (random.random_number_between(0.5, 3.0), random.random_number_between(0.3, 1.2));
         let parent = if k == 0 { "ground".to_string() } else { format!("b{}.at(-0.4 * y)", k - 1) };
         let (how, kind) = [("about = z", "Pin"), ("about = x", "Pin"), ("along = x", "Sleeve")]
-            [random.index_below(3) as usize];
+            [random.random_index_below(3) as usize];
         let _ = write!(
             text,
             "    #[body(mass = {mass}, com = -{length} / 2 * y + 0.1 * z, inertia = cuboid({mass}, 0.2, {length}, 0.3))]\n    b{k}: Body,
     #[joint({parent} -> b{k}, {how})]\n    j{k}: {kind},
     #[acts(on = j{k}, stiffness = {})]\n    s{k}: Spring,\n    #[acts(on = j{k}, damping = {})]\n    d{k}: Dashpot,\n",
-            random.number_between(5.0, 40.0),
-            random.number_between(0.0, 1.0)
+            random.random_number_between(5.0, 40.0),
+            random.random_number_between(0.0, 1.0)
         );
     }
     (text, (0..n).map(|k| format!("j{k}")).collect(), false)
@@ -119,14 +119,17 @@ fn declared_speeds_leave_random_motions_unchanged() {
         let mut with = body.clone();
         let (mut begin, mut of_speeds, mut of_rates) = (Vec::new(), Vec::new(), Vec::new());
         // A loop starts in its assembled configuration; one velocity is free.
-        let q: Vec<f64> =
-            joints.iter().map(|_| if loops { 0.0 } else { random.number_between(-0.5, 0.5) }).collect();
-        let v: Vec<f64> = joints.iter().map(|_| random.number_between(-1.0, 1.0)).collect();
+        let q: Vec<f64> = joints
+            .iter()
+            .map(|_| if loops { 0.0 } else { random.random_number_between(-0.5, 0.5) })
+            .collect();
+        let v: Vec<f64> = joints.iter().map(|_| random.random_number_between(-1.0, 1.0)).collect();
         for (k, joint) in joints.iter().enumerate() {
-            let (own, other) = (random.number_between(0.5, 3.0), random.number_between(-1.0, 1.0));
+            let (own, other) =
+                (random.random_number_between(0.5, 3.0), random.random_number_between(-1.0, 1.0));
             let (mut value, mut speed) = (format!("{own} * rate({joint})"), own * v[k]);
             // Triangular, hence invertible everywhere.
-            if k > 0 && random.index_below(2) == 0 {
+            if k > 0 && random.random_index_below(2) == 0 {
                 let before = &joints[k - 1];
                 let _ = write!(value, " + {other} * cos({joint}) * rate({before})");
                 speed += other * q[k].cos() * v[k - 1];
@@ -165,12 +168,12 @@ fn first_order_states_integrate_like_velocities() {
         // Parameters have inferred units.
         let parameters = ["lag", "lift", "drag", "wave", "scale", "gain"];
         let values = [
-            random.number_between(0.5, 20.0),
-            random.number_between(-0.5, 0.5),
-            random.number_between(0.0, 0.5),
-            random.number_between(-0.5, 0.5),
-            random.number_between(0.2, 2.0),
-            random.number_between(-8.0, 8.0),
+            random.random_number_between(0.5, 20.0),
+            random.random_number_between(-0.5, 0.5),
+            random.random_number_between(0.0, 0.5),
+            random.random_number_between(-0.5, 0.5),
+            random.random_number_between(0.2, 2.0),
+            random.random_number_between(-8.0, 8.0),
         ];
         let state_rate_source = |x: &str| {
             format!(
@@ -199,8 +202,10 @@ fn first_order_states_integrate_like_velocities() {
             actuator_declaration("rate(rail)"),
             state_rate_source("rate(rail)")
         );
-        let (level, drive) = (random.number_between(-1.0, 1.0), random.number_between(-2.0, 2.0));
-        let begin = if loops { vec![] } else { vec![format!("q.{j}={}", random.number_between(-0.5, 0.5))] };
+        let (level, drive) =
+            (random.random_number_between(-1.0, 1.0), random.random_number_between(-2.0, 2.0));
+        let begin =
+            if loops { vec![] } else { vec![format!("q.{j}={}", random.random_number_between(-0.5, 0.5))] };
         let options_with_values = |name: &str| {
             let values = parameters.iter().zip(values).map(|(name, value)| format!("{name}={value}"));
             let own = ["share=0.7".to_string(), format!("{name}={level}"), format!("u.drive={drive}")];
@@ -240,15 +245,15 @@ fn piecewise_linear_inputs_are_applied_exactly() {
     );
     for case in 0..case_count() {
         let random = &mut Random(3 * case + 5);
-        let mut rows = vec![(0.0, random.number_between(-5.0, 5.0))];
+        let mut rows = vec![(0.0, random.random_number_between(-5.0, 5.0))];
         while rows.len() < 12 {
             let last = rows[rows.len() - 1].0;
-            let t = match random.index_below(4) {
+            let t = match random.random_index_below(4) {
                 0 => last,
                 1 => last + 0.001,
-                _ => last + random.number_between(0.05, 0.6),
+                _ => last + random.random_number_between(0.05, 0.6),
             };
-            rows.push((t, random.number_between(-50.0, 50.0)));
+            rows.push((t, random.random_number_between(-50.0, 50.0)));
         }
         let table: String = rows.iter().map(|(t, u)| format!("{t},{u}\r\n")).collect();
         std::fs::write(here.join("push.csv"), format!("\u{feff}t,u.push\r\n{table}")).unwrap();
@@ -276,16 +281,17 @@ fn stiff_overdamped_springs_follow_the_closed_form() {
     let here = test_folder("random_stiff");
     for case in 0..case_count() {
         let random = &mut Random(5 * case + 7);
-        let (mass, push) = (random.number_between(0.5, 2.0), random.number_between(-50.0, 50.0));
-        let fast = 10_f64.powf(random.number_between(3.0, 6.0)).round();
-        let slow = random.number_between(0.5, 20.0);
+        let (mass, push) =
+            (random.random_number_between(0.5, 2.0), random.random_number_between(-50.0, 50.0));
+        let fast = 10_f64.powf(random.random_number_between(3.0, 6.0)).round();
+        let slow = random.random_number_between(0.5, 20.0);
         // m x″ + m (fast + slow) x′ + m fast slow x = push.
         let (c, k) = (mass * (fast + slow), mass * fast * slow);
         let cart = mechanism_source(&format!(
             "    #[body(mass = {mass})]\n    cart: Body,\n    #[joint(ground -> cart, along = x)]\n    rail: Sleeve,
     #[acts(on = rail, stiffness = {k})]\n    spring: Spring,\n    #[acts(on = rail, damping = {c})]\n    damper: Dashpot,\n    #[acts(on = rail)]\n    push: Force,\n"
         ));
-        let begin = random.number_between(-1.0, 1.0);
+        let begin = random.random_number_between(-1.0, 1.0);
         let set = [format!("q.rail={begin}"), format!("u.push={push}")];
         let log = simulate_to_log(&here, "stiff", &cart, &set, &["--duration", "2"]);
         let rest = push / k;

@@ -13,7 +13,7 @@ use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::{Graph, Symbol};
 use linkwork_compiler::mechanism::Quantity;
 use linkwork_compiler::resolve::build_model;
-use linkwork_compiler::{derive, read_source};
+use linkwork_compiler::{derive, parse_source_and_import};
 use std::io::{BufRead, Write};
 use std::path::Path;
 use std::process::ExitCode;
@@ -48,8 +48,8 @@ fn evaluate_mechanism() -> Result<(), Failure> {
     let more: String = options.iter().map(|option| format!(", {option}")).collect();
     let arguments = format!("{format} = {file:?}{more}").parse()?;
     let mut cx = Diagnostics::new();
-    let source = read_source(arguments, "pub struct Robot;".parse()?, Path::new("/"), &mut cx);
-    let failure_from_diagnostics = |cx: &Diagnostics| Failure::from(cx.messages().join("\n"));
+    let source = parse_source_and_import(arguments, "pub struct Robot;".parse()?, Path::new("/"), &mut cx);
+    let failure_from_diagnostics = |cx: &Diagnostics| Failure::from(cx.full_message_texts().join("\n"));
     let source = source.filter(|_| cx.is_empty()).ok_or_else(|| failure_from_diagnostics(&cx))?;
     let description = &source.mechanism.description;
     let graph = Graph::new();
@@ -69,7 +69,7 @@ fn evaluate_mechanism() -> Result<(), Failure> {
         let numbers: Vec<f64> = line.split_whitespace().map(str::parse).collect::<Result<_, _>>()?;
         let number_at_index_or_nan = |k: usize| numbers.get(k).copied().unwrap_or(f64::NAN);
         let function_values = |name: &str, passive: &[f64]| {
-            let value_of_symbol = |symbol: Symbol| match Quantity::from_symbol(symbol) {
+            let given_number_of_symbol = |symbol: Symbol| match Quantity::from_symbol(symbol) {
                 Quantity::Configuration(k) => number_at_index_or_nan(k),
                 Quantity::Velocity(k) => number_at_index_or_nan(nq + k),
                 Quantity::Input(k) => number_at_index_or_nan(nq + nv + k),
@@ -78,7 +78,9 @@ fn evaluate_mechanism() -> Result<(), Failure> {
                 _ => f64::NAN,
             };
             let found = derived.functions.iter().find(|function| function.name == name);
-            found.map(|function| function.program.interpret_program(&value_of_symbol)).unwrap_or_default()
+            found
+                .map(|function| function.program.interpret_program(&given_number_of_symbol))
+                .unwrap_or_default()
         };
         // If the passive forces are long, the other functions call them.
         let passive = function_values("__passive_forces", &[]);

@@ -14,11 +14,11 @@
 
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::{Graph, Symbol};
-use linkwork_compiler::lower::{Counts, Op, Program, pipeline};
+use linkwork_compiler::lower::{Op, OperationCounts, Program, pipeline};
 use linkwork_compiler::mechanism::Quantity;
 use linkwork_compiler::passes::Passes;
 use linkwork_compiler::resolve::build_model;
-use linkwork_compiler::{compile, derive_with_options, expand, read_source};
+use linkwork_compiler::{compile, derive_with_options, expand, parse_source_and_import};
 use proc_macro2::TokenStream;
 use quote::ToTokens;
 use std::cell::RefCell;
@@ -58,13 +58,15 @@ fn run_expansion() -> Result<(), Failure> {
     }
     let mut words = arguments.iter();
     while let Some(word) = words.next() {
-        let mut value = || words.next().ok_or_else(|| format!("`{word}` needs a value"));
+        let mut value_of_option = || words.next().ok_or_else(|| format!("`{word}` needs a value"));
         match word.as_str() {
             "--rust" | "--counts" | "--time" => mode = word,
-            "--struct" => name = Some(value()?.as_str()),
-            "--after" => pass = Some(value()?.as_str()),
-            "--function" => function = Some(value()?.as_str()),
-            "--base" | "--inertia" | "--mimic" | "--passive" => options.push((&word[2..], value()?.as_str())),
+            "--struct" => name = Some(value_of_option()?.as_str()),
+            "--after" => pass = Some(value_of_option()?.as_str()),
+            "--function" => function = Some(value_of_option()?.as_str()),
+            "--base" | "--inertia" | "--mimic" | "--passive" => {
+                options.push((&word[2..], value_of_option()?.as_str()))
+            }
             _ if !word.starts_with('-') && file.is_none() => file = Some(Path::new(word)),
             _ => return Err(format!("what is `{word}`?").into()),
         }
@@ -186,12 +188,12 @@ fn print_formatted_rust(input: &MechanismInput) -> Result<(), Failure> {
 
 /// Reports the errors of a mechanism that does not compile.
 fn result_or_errors<T>(found: Option<T>, cx: &Diagnostics) -> Result<T, Failure> {
-    found.ok_or_else(|| cx.messages().join("\n").into())
+    found.ok_or_else(|| cx.full_message_texts().join("\n").into())
 }
 
 fn print_operation_counts(input: &MechanismInput) -> Result<(), Failure> {
     let cx = &mut Diagnostics::new();
-    let source = read_source(input.arguments.clone(), input.item.clone(), &input.folder, cx);
+    let source = parse_source_and_import(input.arguments.clone(), input.item.clone(), &input.folder, cx);
     let source = result_or_errors(source, cx)?;
     let graph = Graph::new();
     let output = compile(&source, &graph, cx);
@@ -231,10 +233,10 @@ fn print_operation_counts(input: &MechanismInput) -> Result<(), Failure> {
 }
 
 fn print_operation_count_row<'a>(name: &str, programs: impl IntoIterator<Item = &'a Program>) {
-    let (mut sum, mut instructions) = (Counts::default(), 0);
+    let (mut sum, mut instructions) = (OperationCounts::default(), 0);
     for program in programs {
         let c = program.counts;
-        sum = Counts {
+        sum = OperationCounts {
             mul: sum.mul + c.mul,
             add: sum.add + c.add,
             div: sum.div + c.div,
@@ -257,7 +259,7 @@ fn print_operation_count_row<'a>(name: &str, programs: impl IntoIterator<Item = 
 /// Prints the programs of one function after a pass, or after every pass.
 fn print_after_pass(input: &MechanismInput, pass: &str, function: &str) -> Result<(), Failure> {
     let (wanted, of) = (pass.to_string(), function.to_string());
-    let print_after_pass = move |function: &str, pass: &str, program: &Program, _: Duration| {
+    let print_program_if_selected = move |function: &str, pass: &str, program: &Program, _: Duration| {
         if function == of && (pass == wanted || wanted == "all") {
             let c = program.counts;
             println!(
@@ -269,11 +271,12 @@ fn print_after_pass(input: &MechanismInput, pass: &str, function: &str) -> Resul
         }
     };
     let cx = &mut Diagnostics::new();
-    let source = read_source(input.arguments.clone(), input.item.clone(), &input.folder, cx);
+    let source = parse_source_and_import(input.arguments.clone(), input.item.clone(), &input.folder, cx);
     let source = result_or_errors(source, cx)?;
     let graph = Graph::new();
-    let output =
-        pipeline::run_with_pass_observer(Box::new(print_after_pass), || compile(&source, &graph, cx));
+    let output = pipeline::run_with_pass_observer(Box::new(print_program_if_selected), || {
+        compile(&source, &graph, cx)
+    });
     result_or_errors(output, cx).map(|_| ())
 }
 
@@ -353,7 +356,7 @@ fn expand_once_with_timing(
     let cx = &mut Diagnostics::new();
     watch.measure_stage("whole expansion", || input.expand_input());
     let source = watch.measure_stage("read", || {
-        read_source(input.arguments.clone(), input.item.clone(), &input.folder, cx)
+        parse_source_and_import(input.arguments.clone(), input.item.clone(), &input.folder, cx)
     });
     let source = result_or_errors(source, cx)?;
     let graph = Graph::new();

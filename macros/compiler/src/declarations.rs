@@ -47,8 +47,8 @@ impl DeclaredStruct {
 
     /// Returns the declaration of a robot file as a struct without fields: its format follows from the ending
     /// of the path and from the text.
-    pub fn of_file(path: &Path, text: &str) -> DeclaredStruct {
-        let name = type_name(path);
+    pub fn declaration_of_robot_file(path: &Path, text: &str) -> DeclaredStruct {
+        let name = type_name_from_path(path);
         let ident = syn::Ident::new(&name, Span::call_site());
         let written = path.to_string_lossy().into_owned();
         let format = syn::Ident::new(robot_file_format(path, text).import_option_name(), Span::call_site());
@@ -61,7 +61,7 @@ impl DeclaredStruct {
     }
 
     /// Appends arguments to those of the attribute `#[mechanism]`.
-    pub fn add(&mut self, more: TokenStream) {
+    pub fn append_attribute_arguments(&mut self, more: TokenStream) {
         if more.is_empty() {
             return;
         }
@@ -109,7 +109,7 @@ fn robot_file_format(path: &Path, text: &str) -> FileFormat {
 }
 
 /// Returns the name of a type after that of a file: `simple_humanoid.urdf` is `SimpleHumanoid`.
-fn type_name(path: &Path) -> String {
+fn type_name_from_path(path: &Path) -> String {
     let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     let words = stem.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
     let capitalise_word = |word: &str| {

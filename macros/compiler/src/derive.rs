@@ -34,13 +34,13 @@ mod specialisation;
 mod speeds;
 
 use derivation::Derivation;
-use derivatives::Derivatives;
+use derivatives::DerivativeFunctions;
 use regressor::IdentificationFunctions;
 use specialisation::ParameterSpecialisation;
 
 pub use output::{
-    AssociatedConstant, BlockLoopDerivatives, FrameSteps, Function, LinkRecursionPrograms, Output, PLACEMENT,
-    Prepared, TWIST,
+    AssociatedConstant, BlockLoopDerivatives, DerivationOutput, FrameRecursionPrograms, Function,
+    LinkRecursionPrograms, PLACEMENT, PreparedFunctions, TWIST,
 };
 
 /// Maximum number of products in the elimination of constraints.
@@ -48,7 +48,7 @@ const MOST_PRODUCTS: usize = 100_000;
 
 /// Derives all functions except the optional ones. Returns `None` with the errors in `cx` if the equations
 /// cannot be derived, for example because the mass matrix is singular.
-pub fn derive<'g>(model: &Model<'g>, cx: &mut Diagnostics) -> Option<Output> {
+pub fn derive<'g>(model: &Model<'g>, cx: &mut Diagnostics) -> Option<DerivationOutput> {
     derive_with_options(model, RequestedFunctions::default(), Passes::default(), cx)
 }
 
@@ -58,7 +58,7 @@ pub fn derive_with_options<'g>(
     requests: RequestedFunctions,
     passes: Passes,
     cx: &mut Diagnostics,
-) -> Option<Output> {
+) -> Option<DerivationOutput> {
     let passes = enabled_passes(passes, requests.skipped);
     let speeds = SpeedTransformation::new(model).map(Rc::new);
     let model = speeds.as_ref().map_or(model, |speeds| &speeds.native);
@@ -91,9 +91,9 @@ pub fn derive_with_options<'g>(
         hamilton: (requests.hamilton && !has_massless_coordinates(model))
             .then(|| hamilton::derive(model, &joints, &mass)),
         routh: cyclic.clone().filter(|_| requests.routh).map(|c| routh::derive(model, &joints, &mass, c)),
-        conserved: requests
-            .conserved
-            .then(|| conserved_in_speeds(conserved::conserved_quantities(model, &joints), speeds.as_deref())),
+        conserved: requests.conserved.then(|| {
+            conserved_quantities_in_speeds(conserved::conserved_quantities(model, &joints), speeds.as_deref())
+        }),
     };
     let own = (model, speeds.as_ref());
     let functions_with_specialisation =
@@ -126,11 +126,11 @@ pub fn derive_with_options<'g>(
         constants.push(AssociatedConstant::parameter_names_constant(&model.parameters));
     }
     constants.extend(drawing_constants(model, requests));
-    let linear = linear_equations(model, &joints, &mass, cx)?;
-    constants.extend(AssociatedConstant::linear_equations(&linear));
+    let linear = printed_linear_equations(model, &joints, &mass, cx)?;
+    constants.extend(AssociatedConstant::linear_equation_constants(&linear));
     let equations =
         printed_equations((model, speeds.as_deref()), &joints, &mass, (requests.equations, cyclic), cx)?;
-    let output = Output {
+    let output = DerivationOutput {
         equations,
         linear_equations: linear.into_iter().map(|(_, written)| written).collect(),
         prepared,
@@ -148,7 +148,7 @@ fn derive_kinematic<'g>(
     passes: Passes,
     joints: &[Joint<'g>],
     cx: &mut Diagnostics,
-) -> Option<Output> {
+) -> Option<DerivationOutput> {
     if !matches!(requests.equations, EquationsOption::Readable | EquationsOption::Structure) {
         cx.report_error(model.place.clone(), "without inertia there are no equations of motion to print")
             .add_help("remove `equations` or `inertia = none`");
@@ -165,7 +165,11 @@ fn derive_kinematic<'g>(
         ParameterSpecialisation::None,
     );
     let constants = drawing_constants(model, requests);
-    validated_output(model, Output { constants, ..output_with_recursion_steps(model, joints, functions) }, cx)
+    validated_output(
+        model,
+        DerivationOutput { constants, ..output_with_recursion_steps(model, joints, functions) },
+        cx,
+    )
 }
 
 /// Checks that the requested functions exist for a mechanism and are not too long; reports an error and
@@ -192,7 +196,7 @@ fn check_requests(model: &Model<'_>, requests: RequestedFunctions, cx: &mut Diag
 }
 
 /// Writes the values of conserved quantities in generalized speeds, if the mechanism defines any.
-fn conserved_in_speeds<'g>(
+fn conserved_quantities_in_speeds<'g>(
     mut kept: Vec<ConservedQuantity<'g>>,
     speeds: Option<&SpeedTransformation<'g>>,
 ) -> Vec<ConservedQuantity<'g>> {
@@ -216,11 +220,11 @@ fn output_with_recursion_steps<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
     functions: Vec<Function>,
-) -> Output {
-    Output {
+) -> DerivationOutput {
+    DerivationOutput {
         functions,
-        links: joints.iter().map(|joint| link_recursion_steps(model, joint)).collect(),
-        frames: model.frames.iter().map(|frame| frame_placement_steps(model, frame)).collect(),
+        links: joints.iter().map(|joint| link_recursion_programs(model, joint)).collect(),
+        frames: model.frames.iter().map(|frame| frame_recursion_programs(model, frame)).collect(),
         charts: model.charts.clone(),
         equations: PrintedEquations::default(),
         linear_equations: Vec::new(),
@@ -231,8 +235,12 @@ fn output_with_recursion_steps<'g>(
 
 /// Checks the derived output: all coefficients must be finite, no expression may be NaN, and the number of
 /// values of each program must match its result. Returns `None` with the error in `cx` otherwise.
-fn validated_output(model: &Model<'_>, output: Output, cx: &mut Diagnostics) -> Option<Output> {
-    if !output.all_functions().all(|f| f.program.is_finite()) {
+fn validated_output(
+    model: &Model<'_>,
+    output: DerivationOutput,
+    cx: &mut Diagnostics,
+) -> Option<DerivationOutput> {
+    if !output.all_functions().all(|f| f.program.has_only_finite_constants()) {
         cx.report_error(model.place.clone(), "the values of this mechanism are too large")
             .add_help("a product of masses, lengths or forces in its equations is not a finite number");
         return None;
@@ -355,7 +363,7 @@ impl<'g> OptionalFunctionData<'_, 'g> {
         let [bodies, base] = self
             .identification
             .as_ref()
-            .map(IdentificationFunctions::body_and_parameter_counts)
+            .map(IdentificationFunctions::body_and_base_parameter_counts)
             .unwrap_or_default();
         let entries = self.entries.clone().unwrap_or_default();
         let passive = model.passive.as_ref().map(|passive| passive.derivatives.len());
@@ -383,7 +391,7 @@ fn derive_and_lower_functions<'g>(
 ) -> Vec<Function> {
     let given = match speeds {
         Some(_) => None,
-        None => passive::with_passive_force_arguments(model, requests.derivatives),
+        None => passive::model_with_passive_force_symbols(model, requests.derivatives),
     };
     let model = speeds.map_or(given.as_ref().unwrap_or(model), |speeds| &speeds.model);
     let facts = extras.facts_of_model(model, requests);
@@ -396,10 +404,11 @@ fn derive_and_lower_functions<'g>(
         derivation.derive_declared_functions(outputs::declared_output_functions(model, &facts), functions);
     let by_variants = facts.requests.derivatives && speeds.is_none();
     let variants = if by_variants { derivatives::model_variants(model, passes) } else { Vec::new() };
-    let derivatives = Derivatives::new(model, &variants, passes, specialisation);
+    let derivatives = DerivativeFunctions::new(model, &variants, passes, specialisation);
     // The structure of the derivatives of a large mechanism is known only at this point.
-    let calls = derivatives.as_ref().is_some_and(Derivatives::forward_derivatives_call_functions);
-    let calls_linear = derivatives.as_ref().is_some_and(Derivatives::linearization_calls_functions);
+    let calls =
+        derivatives.as_ref().is_some_and(DerivativeFunctions::forward_dynamics_derivatives_call_functions);
+    let calls_linear = derivatives.as_ref().is_some_and(DerivativeFunctions::linearization_calls_functions);
     let facts = Facts { calls, calls_linear, ..facts.clone() };
     let derivation = derivation.with_option_data(&facts, extras, derivatives.as_ref());
     let mut functions =
@@ -452,27 +461,29 @@ fn printed_equations<'g>(
     (printed, cyclic): (EquationsOption, Option<Vec<usize>>),
     cx: &mut Diagnostics,
 ) -> Option<PrintedEquations> {
-    let mut refuse = |what: &str, help: &str| {
+    let mut report_unavailable_equations = |what: &str, help: &str| {
         cx.report_error(model.place.clone(), what.to_string()).add_help(help);
         None
     };
     match printed {
         EquationsOption::Readable => Some(format_readable_equations((model, speeds), joints, mass)),
         EquationsOption::Structure => Some(PrintedEquations::default()),
-        EquationsOption::Kane if model.constraints.iter().any(|c| !c.friction.is_empty()) => refuse(
-            "the equations of a slipping contact contain its normal force, which is a multiplier",
-            "write `equations = lagrange`",
-        ),
+        EquationsOption::Kane if model.constraints.iter().any(|c| !c.friction.is_empty()) => {
+            report_unavailable_equations(
+                "the equations of a slipping contact contain its normal force, which is a multiplier",
+                "write `equations = lagrange`",
+            )
+        }
         EquationsOption::Kane if !model.constraints.is_empty() => {
             let named = speeds.map_or(model, |speeds| &speeds.model);
             match kane::kane_equations(model, joints, speeds) {
                 Ok(found) => Some(kane::format_kane_equations(named, &found)),
-                Err(kane::KaneFailure::Choice) => refuse(
+                Err(kane::KaneFailure::Choice) => report_unavailable_equations(
                     "no velocities of this mechanism are determined by the others through its constraints in \
                      every configuration",
                     "write `equations = lagrange`, which keeps all constraints with multipliers",
                 ),
-                Err(kane::KaneFailure::Length) => refuse(
+                Err(kane::KaneFailure::Length) => report_unavailable_equations(
                     "Kane's equations of this mechanism have thousands of terms",
                     "write `equations = lagrange`, which keeps the constraints with multipliers, or declare \
                      generalized speeds in which the equations are shorter",
@@ -484,7 +495,7 @@ fn printed_equations<'g>(
             let equations = equations::derive(model, joints, mass, speeds, &Limits::ASKED);
             let named = speeds.map_or(model, |speeds| &speeds.model);
             equations.map(|e| equations::format_equations(named, &e)).or_else(|| {
-                refuse(
+                report_unavailable_equations(
                     "the equations of this mechanism have thousands of terms, or more symbols and functions \
                      than are expanded",
                     "`equations = structure` prints their structure; the generated functions do not expand \
@@ -495,7 +506,7 @@ fn printed_equations<'g>(
         EquationsOption::Routh => {
             let reduced = cyclic.and_then(|cyclic| reduced::routh_equations(model, joints, mass, cyclic));
             reduced.map(|r| reduced::format_routh_equations(model, &r)).or_else(|| {
-                refuse(
+                report_unavailable_equations(
                     "Routh's equations of this mechanism are too long: more than three cyclic coordinates \
                      are coupled by inertia, or thousands of terms",
                     "the option `routh` generates them as functions; `equations = lagrange` prints \
@@ -503,12 +514,12 @@ fn printed_equations<'g>(
                 )
             })
         }
-        EquationsOption::Hamilton if !model.constraints.is_empty() => refuse(
+        EquationsOption::Hamilton if !model.constraints.is_empty() => report_unavailable_equations(
             "Hamilton's equations are printed only for mechanisms without constraints",
             "write `equations = lagrange`; the option `hamilton` generates the functions with constraints as \
              well",
         ),
-        EquationsOption::Hamilton if speeds.is_some() => refuse(
+        EquationsOption::Hamilton if speeds.is_some() => report_unavailable_equations(
             "Hamilton's equations are printed in the momenta of coordinates, not of declared speeds",
             "write `equations = lagrange`, which prints Kane's equations in speeds; the option `hamilton` \
              generates the functions in speeds as well",
@@ -516,7 +527,7 @@ fn printed_equations<'g>(
         EquationsOption::Hamilton => {
             let canonical = equations::canonical_equations(model, joints, mass);
             canonical.map(|c| equations::format_canonical_equations(model, &c)).or_else(|| {
-                refuse(
+                report_unavailable_equations(
                     "Hamilton's equations of this mechanism are too long: more than three velocities are \
                      coupled by inertia, or thousands of terms",
                     "the option `hamilton` generates them as functions; `equations = lagrange` prints \
@@ -529,7 +540,7 @@ fn printed_equations<'g>(
 
 /// Returns the equations linearised about each declared equilibrium, with its name. Returns `None` with the
 /// errors in `cx` if one of them has no linear equations.
-fn linear_equations<'g>(
+fn printed_linear_equations<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
     mass: &crba::Matrix<'g>,
@@ -563,7 +574,7 @@ fn lower_recursion_step(outputs: &[Expr<'_>]) -> Program {
     lower(outputs).run_passes(pipeline::PART)
 }
 
-fn link_recursion_steps<'g>(model: &Model<'g>, joint: &Joint<'g>) -> LinkRecursionPrograms {
+fn link_recursion_programs<'g>(model: &Model<'g>, joint: &Joint<'g>) -> LinkRecursionPrograms {
     let v = mechanics::velocity_symbols(model);
     let a = mechanics::acceleration_symbols(model);
     let columns: Vec<Expr<'g>> =
@@ -581,8 +592,11 @@ fn link_recursion_steps<'g>(model: &Model<'g>, joint: &Joint<'g>) -> LinkRecursi
     }
 }
 
-fn frame_placement_steps<'g>(model: &Model<'g>, frame: &crate::mechanism::NamedFrame<'g>) -> FrameSteps {
-    FrameSteps {
+fn frame_recursion_programs<'g>(
+    model: &Model<'g>,
+    frame: &crate::mechanism::NamedFrame<'g>,
+) -> FrameRecursionPrograms {
+    FrameRecursionPrograms {
         name: frame.name.clone(),
         link: frame.link.map(|l| l.0),
         is_link: frame.pose.rotation.is_identity() && frame.pose.translation.is_zero(),

@@ -153,7 +153,7 @@ impl Diagnostics {
     }
 
     /// Creates a list that is never printed. Callers use it to test whether something is an error.
-    pub fn discarded_diagnostics() -> Diagnostics {
+    pub fn unprinted_diagnostics() -> Diagnostics {
         Diagnostics { unread: true, ..Diagnostics::default() }
     }
 
@@ -170,7 +170,7 @@ impl Diagnostics {
     /// Reports an error and returns it for notes and help. The message is in lower case without a full stop,
     /// with the user's identifiers in backticks.
     pub fn report_error(&mut self, place: impl Into<Place>, message: impl Into<String>) -> &mut Diagnostic {
-        self.add(Diagnostic::new(place, message));
+        self.add_diagnostic(Diagnostic::new(place, message));
         self.errors.last_mut().unwrap_or_else(|| unreachable!())
     }
 
@@ -187,7 +187,7 @@ impl Diagnostics {
     }
 
     /// Adds an error to the list.
-    pub fn add(&mut self, one: Diagnostic) {
+    pub fn add_diagnostic(&mut self, one: Diagnostic) {
         self.errors.push(one);
     }
 
@@ -232,7 +232,7 @@ impl Diagnostics {
     }
 
     /// Returns the complete texts of the errors in order.
-    pub fn messages(&self) -> Vec<String> {
+    pub fn full_message_texts(&self) -> Vec<String> {
         self.distinct_errors().map(Diagnostic::full_message_text).collect()
     }
 

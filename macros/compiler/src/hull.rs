@@ -93,12 +93,12 @@ impl Hull {
         let faces = hull_faces(&vertices, size);
         let edges = hull_edges(&vertices, &faces);
         let mut hull = Hull { vertices, faces, edges, size, error: 0.0 };
-        hull.error = outside.iter().map(|p| hull.distance(*p)).fold(0.0, f64::max);
+        hull.error = outside.iter().map(|p| hull.signed_distance_of_point(*p)).fold(0.0, f64::max);
         Ok(hull)
     }
 
     /// Returns the distance of a point from the hull; negative inside.
-    pub fn distance(&self, p: Point) -> f64 {
+    pub fn signed_distance_of_point(&self, p: Point) -> f64 {
         let Some((face, height)) = face_farthest_below_point(&self.faces, p) else { return f64::NAN };
         let foot = sub(p, face.normal.map(|x| x * height));
         if self.faces.iter().all(|face| face.distance_from_plane(foot) <= FLAT * self.size) {
@@ -212,8 +212,9 @@ fn hull_edges(vertices: &[Point], faces: &[HullFace]) -> Vec<[usize; 2]> {
             let both = face.corners & other.corners;
             let shared: Vec<usize> = (0..vertices.len()).filter(|k| both >> k & 1 == 1).collect();
             let pairs = shared.iter().flat_map(|i| shared.iter().map(move |j| [*i, *j]));
-            let length = |[i, j]: &[usize; 2]| norm(sub(vertices[*i], vertices[*j]));
-            let longest = pairs.filter(|[i, j]| i < j).max_by(|a, b| length(a).total_cmp(&length(b)));
+            let edge_length = |[i, j]: &[usize; 2]| norm(sub(vertices[*i], vertices[*j]));
+            let longest =
+                pairs.filter(|[i, j]| i < j).max_by(|a, b| edge_length(a).total_cmp(&edge_length(b)));
             found.extend(longest.filter(|edge| !found.contains(edge)));
         }
     }
@@ -288,10 +289,10 @@ mod tests {
                 [([1.0, 0.0, 0.0], 1.0), ([1.0, 1.0, 0.0], 2_f64.sqrt()), ([1.0; 3], 3_f64.sqrt())]
             {
                 let p = core::array::from_fn(|k| if out[k] > 0.0 { corner[k] + 1.0 } else { 0.0 });
-                assert!((hull.distance(p) - distance).abs() < 1e-12, "{p:?}");
+                assert!((hull.signed_distance_of_point(p) - distance).abs() < 1e-12, "{p:?}");
             }
             let depth = edges.iter().copied().fold(f64::INFINITY, f64::min) / 2.0;
-            assert!((hull.distance([0.0; 3]) + depth).abs() < 1e-12);
+            assert!((hull.signed_distance_of_point([0.0; 3]) + depth).abs() < 1e-12);
         }
     }
 
@@ -303,7 +304,7 @@ mod tests {
             assert_eq!(hull.vertices.len(), count);
             assert!(hull.error < largest, "{}", hull.error);
             // Every point of the sphere is within the stated distance, and some point is at this distance.
-            let worst = points.iter().map(|p| hull.distance(*p)).fold(0.0, f64::max);
+            let worst = points.iter().map(|p| hull.signed_distance_of_point(*p)).fold(0.0, f64::max);
             assert!((hull.error - worst).abs() < 1e-12, "{} {worst}", hull.error);
             // Euler's formula for a polyhedron of triangles.
             assert_eq!((hull.faces.len(), hull.edges.len()), (2 * count - 4, 3 * count - 6));

@@ -34,8 +34,8 @@ use syntax::{Description, Mechanism};
 
 pub use declarations::{DeclaredStruct, mechanism_declarations};
 pub use derive::{derive, derive_with_options, equations_as_text, equations_latex};
-pub use source::{Source, read_source};
-pub use syntax::duplicate_struct_without_fields;
+pub use source::{ParsedSource, parse_source_and_import};
+pub use syntax::struct_without_fields_if_duplicate;
 
 /// Compiles `#[mechanism(arguments)] item` to the generated code. Each error is reported as one
 /// `compile_error!`; the code of an invalid mechanism contains only its interface. Paths of files are
@@ -44,7 +44,7 @@ pub fn expand(arguments: TokenStream, item: TokenStream, folder: &Path) -> Gener
     let mut cx = Diagnostics::new();
     // rustc already reports missing and wrong commas of the struct.
     let item = syntax::insert_missing_commas(&item).map_or(item, |(separated, _)| separated);
-    let Some(source) = read_source(arguments, item, folder, &mut cx) else {
+    let Some(source) = parse_source_and_import(arguments, item, folder, &mut cx) else {
         return GeneratedCode { tokens: cx.into_tokens(), text: String::new() };
     };
     let graph = Graph::new();
@@ -64,7 +64,10 @@ pub fn expand(arguments: TokenStream, item: TokenStream, folder: &Path) -> Gener
 
 /// Returns the errors as `compile_error!`. The first replaces the struct's definition, so that rustc reports
 /// no further errors where the type is used.
-fn errors_with_struct_stub(source: &Source, mut errors: impl Iterator<Item = TokenStream>) -> GeneratedCode {
+fn errors_with_struct_stub(
+    source: &ParsedSource,
+    mut errors: impl Iterator<Item = TokenStream>,
+) -> GeneratedCode {
     let first = errors.next().unwrap_or_default();
     let mut tokens = emit::struct_alias_with_error(&source.mechanism.shell, &first);
     tokens.extend(errors);
@@ -74,9 +77,13 @@ fn errors_with_struct_stub(source: &Source, mut errors: impl Iterator<Item = Tok
 /// Compiles a struct whose derives stand above the attribute, so that they have already processed the
 /// elements. Returns one `compile_error!` for the derive in place of the struct, and the errors of the
 /// struct's grammar.
-pub fn expand_with_derive_above(arguments: TokenStream, item: TokenStream, folder: &Path) -> GeneratedCode {
+pub fn expand_derive_above_to_error(
+    arguments: TokenStream,
+    item: TokenStream,
+    folder: &Path,
+) -> GeneratedCode {
     let mut cx = Diagnostics::new();
-    let Some(source) = read_source(arguments, item, folder, &mut cx) else {
+    let Some(source) = parse_source_and_import(arguments, item, folder, &mut cx) else {
         return GeneratedCode { tokens: cx.into_tokens(), text: String::new() };
     };
     let error = derive_above_attribute_error(proc_macro2::Span::call_site());
@@ -93,7 +100,7 @@ pub fn derive_above_attribute_error(attribute: proc_macro2::Span) -> Diagnostic 
 /// Compiles a mechanism to C99: the text of a source file and of its header. Returns `None` with the errors
 /// in `cx` if the mechanism or the options are not supported.
 pub fn export_c(
-    source: &Source,
+    source: &ParsedSource,
     options: &export::Options,
     cx: &mut Diagnostics,
 ) -> Option<export::c::CSourceFiles> {
@@ -103,7 +110,8 @@ pub fn export_c(
     let passes = passes::Passes { lanes: reproducible, ..passes::Passes::default() };
     let (model, output) = compile_with_passes(source, &graph, passes, cx)?;
     let tables = source.mechanism.shell.table_names();
-    let options = &export::Options { left_out: rust_only_functions(source), reproducible, ..options.clone() };
+    let options =
+        &export::Options { left_out: requested_rust_only_functions(source), reproducible, ..options.clone() };
     export::c::export_c_source(&model, &output, &tables, options)
         .map_err(|unfit| report_unsupported_export(&model, unfit, cx))
         .ok()
@@ -112,14 +120,14 @@ pub fn export_c(
 /// Compiles a tree mechanism to kernels in CUDA, and to functions that launch them. Returns `None` with the
 /// errors in `cx` if the mechanism or the options are not supported.
 pub fn export_cuda(
-    source: &Source,
+    source: &ParsedSource,
     options: &export::Options,
     cx: &mut Diagnostics,
 ) -> Option<export::cuda::KernelFiles> {
     let graph = Graph::new();
     let (model, output) = compile_for_gpu_registers(source, &graph, cx)?;
     let tables = source.mechanism.shell.table_names();
-    let options = &export::Options { left_out: rust_only_functions(source), ..options.clone() };
+    let options = &export::Options { left_out: requested_rust_only_functions(source), ..options.clone() };
     export::cuda::export_cuda_kernels(&model, &output, &tables, options)
         .map_err(|unfit| report_unsupported_export(&model, unfit, cx))
         .ok()
@@ -127,21 +135,26 @@ pub fn export_cuda(
 
 /// Compiles a tree mechanism to compute shaders in WGSL. Returns `None` with the errors in `cx` if the
 /// mechanism is not supported.
-pub fn export_wgsl(source: &Source, prefix: &str, cx: &mut Diagnostics) -> Option<export::wgsl::ShaderFiles> {
+pub fn export_wgsl(
+    source: &ParsedSource,
+    prefix: &str,
+    cx: &mut Diagnostics,
+) -> Option<export::wgsl::ShaderFiles> {
     let graph = Graph::new();
     let (model, output) = compile_for_gpu_registers(source, &graph, cx)?;
     let tables = source.mechanism.shell.table_names();
     let prefix = prefix.to_string();
-    let options = export::Options { prefix, left_out: rust_only_functions(source), ..Default::default() };
+    let options =
+        export::Options { prefix, left_out: requested_rust_only_functions(source), ..Default::default() };
     export::wgsl::export_wgsl_shaders(&model, &output, &tables, &options)
         .map_err(|unfit| report_unsupported_export(&model, unfit, cx))
         .ok()
 }
 
-/// Compiles a mechanism to the sources and the description of an FMU. Returns `None` with the errors in `cx` if
-/// the mechanism or the options are not supported.
+/// Compiles a mechanism to the sources and the description of an FMU. Returns `None` with the errors in `cx`
+/// if the mechanism or the options are not supported.
 pub fn export_fmu(
-    source: &Source,
+    source: &ParsedSource,
     prefix: &str,
     start: &export::fmu::StartValues,
     has_derivatives: bool,
@@ -166,7 +179,7 @@ pub fn export_fmu(
 /// the `declaration`. Returns the files, and the names of outputs that the FMU does not have. Returns `None`
 /// with the errors in `cx` if the mechanism is not supported.
 pub fn export_fmu_for_runtime_library(
-    source: &Source,
+    source: &ParsedSource,
     declaration: &str,
     prefix: &str,
     start: &export::fmu::StartValues,
@@ -177,13 +190,14 @@ pub fn export_fmu_for_runtime_library(
     let passes = passes::Passes { lanes: false, ..passes::Passes::default() };
     let (model, output) = compile_with_passes(source, &graph, passes, cx)?;
     let tables = source.mechanism.shell.table_names();
-    let no_library_fmu_message = |what: &str| format!("FMUs with the run-time library have no {what}");
+    let missing_in_library_fmu_message =
+        |what: &str| format!("FMUs with the run-time library have no {what}");
     let what = match (&source.mechanism.file, tables.is_empty()) {
         (Some(_), _) => Some((
-            no_library_fmu_message("mechanisms of robot files"),
+            missing_in_library_fmu_message("mechanisms of robot files"),
             "`linkwork convert` writes a declaration",
         )),
-        (None, false) => Some((no_library_fmu_message("tables"), "remove them, or `--library`")),
+        (None, false) => Some((missing_in_library_fmu_message("tables"), "remove them, or `--library`")),
         (None, true) => None,
     };
     if let Some((what, help)) = what {
@@ -193,13 +207,13 @@ pub fn export_fmu_for_runtime_library(
     Some(export::fmu::export_fmu_for_runtime_library(&model, &output, declaration, prefix, start))
 }
 
-/// Derives the functions of a tree mechanism, with instructions in an order for processors that keep all values
-/// in registers.
+/// Derives the functions of a tree mechanism, with instructions in an order for processors that keep all
+/// values in registers.
 fn compile_for_gpu_registers<'g>(
-    source: &Source,
+    source: &ParsedSource,
     graph: &'g Graph,
     cx: &mut Diagnostics,
-) -> Option<(mechanism::Model<'g>, derive::Output)> {
+) -> Option<(mechanism::Model<'g>, derive::DerivationOutput)> {
     reject_reproducible_arithmetic(source, "kernels", cx)?;
     let passes = passes::Passes { lanes: false, ..passes::Passes::default() };
     let (model, mut output) = compile_with_passes(source, graph, passes, cx)?;
@@ -213,7 +227,11 @@ fn compile_for_gpu_registers<'g>(
 }
 
 /// Rejects mechanisms with reproducible arithmetic, which the target, a plural, does not have.
-pub fn reject_reproducible_arithmetic(source: &Source, target: &str, cx: &mut Diagnostics) -> Option<()> {
+pub fn reject_reproducible_arithmetic(
+    source: &ParsedSource,
+    target: &str,
+    cx: &mut Diagnostics,
+) -> Option<()> {
     if !source.mechanism.requests.reproducible {
         return Some(());
     }
@@ -228,11 +246,11 @@ pub fn reject_reproducible_arithmetic(source: &Source, target: &str, cx: &mut Di
 /// Rejects mechanisms with constraints or contacts, whose functions need solvers.
 fn reject_constraints_and_contacts(
     model: &mechanism::Model<'_>,
-    output: &derive::Output,
+    output: &derive::DerivationOutput,
     cx: &mut Diagnostics,
 ) -> Option<()> {
-    let has_function = |id: catalogue::Id| output.functions.iter().any(|f| f.id == id);
-    let what = match (has_function(catalogue::Id::ConstraintJacobian), model.contacts.is_empty()) {
+    let has_function = |id: catalogue::GeneratedId| output.functions.iter().any(|f| f.id == id);
+    let what = match (has_function(catalogue::GeneratedId::ConstraintJacobian), model.contacts.is_empty()) {
         (true, _) => "constraints",
         (_, false) => "contacts",
         _ => return Some(()),
@@ -249,7 +267,7 @@ fn reject_constraints_and_contacts(
 }
 
 /// Returns the functions that options request and that exist in Rust only.
-fn rust_only_functions(source: &Source) -> Vec<String> {
+fn requested_rust_only_functions(source: &ParsedSource) -> Vec<String> {
     let requests = source.mechanism.requests;
     let rust_only = [
         (requests.prepare, "the functions of `prepare`"),
@@ -302,28 +320,28 @@ fn report_unsupported_export(
 /// Returns the messages of all errors in a mechanism; the list is empty if the mechanism is valid.
 pub fn check_mechanism(arguments: TokenStream, item: TokenStream, folder: &Path) -> Vec<String> {
     let mut cx = Diagnostics::new();
-    if let Some(source) = read_source(arguments, item, folder, &mut cx) {
+    if let Some(source) = parse_source_and_import(arguments, item, folder, &mut cx) {
         compile(&source, &Graph::new(), &mut cx);
     }
-    cx.messages()
+    cx.full_message_texts()
 }
 
 /// Builds the checked model of a mechanism and derives all generated functions from it.
 pub fn compile<'g>(
-    source: &Source,
+    source: &ParsedSource,
     graph: &'g Graph,
     cx: &mut Diagnostics,
-) -> Option<(mechanism::Model<'g>, derive::Output)> {
+) -> Option<(mechanism::Model<'g>, derive::DerivationOutput)> {
     compile_with_passes(source, graph, passes::Passes::default(), cx)
 }
 
 /// Like [`compile`], with a choice of optimisation passes.
 pub fn compile_with_passes<'g>(
-    source: &Source,
+    source: &ParsedSource,
     graph: &'g Graph,
     passes: passes::Passes,
     cx: &mut Diagnostics,
-) -> Option<(mechanism::Model<'g>, derive::Output)> {
+) -> Option<(mechanism::Model<'g>, derive::DerivationOutput)> {
     if !cx.is_empty() {
         check_elements_without_syntax_errors(source, graph, cx);
         return None;
@@ -346,11 +364,11 @@ pub fn compile_with_passes<'g>(
 }
 
 fn compile_model_and_functions<'g>(
-    source: &Source,
+    source: &ParsedSource,
     graph: &'g Graph,
     passes: passes::Passes,
     cx: &mut Diagnostics,
-) -> Option<(mechanism::Model<'g>, derive::Output)> {
+) -> Option<(mechanism::Model<'g>, derive::DerivationOutput)> {
     let model = resolve::build_model(&source.mechanism.description, graph, cx)?;
     let requests = source.mechanism.requests;
     let mut output = derive_with_options(&model, requests, passes, cx)?;
@@ -364,7 +382,7 @@ fn compile_model_and_functions<'g>(
 
 /// Checks the elements of a mechanism that syntax errors do not affect. Elements that depend on wrong ones
 /// are not checked, because their errors would only follow from the syntax errors.
-pub fn check_elements_without_syntax_errors(source: &Source, graph: &Graph, cx: &mut Diagnostics) {
+pub fn check_elements_without_syntax_errors(source: &ParsedSource, graph: &Graph, cx: &mut Diagnostics) {
     let Mechanism { reading, description, .. } = &source.mechanism;
     if let Some(rest) = reading.readable_description(description).filter(|_| source.imported) {
         resolve::build_model(&rest, graph, cx);
@@ -372,7 +390,7 @@ pub fn check_elements_without_syntax_errors(source: &Source, graph: &Graph, cx: 
 }
 
 /// Inserts the user's documentation of each output before the generated documentation of its functions.
-fn insert_user_documentation(output: &mut derive::Output, mechanism: &Mechanism) {
+fn insert_user_documentation(output: &mut derive::DerivationOutput, mechanism: &Mechanism) {
     let outputs = &mechanism.description.outputs;
     let notes = mechanism.shell.notes.iter().filter(|(name, _)| outputs.iter().any(|o| o.name.text == *name));
     let prepared = output.prepared.iter_mut().flat_map(|prepared| &mut prepared.functions);
@@ -395,7 +413,7 @@ fn check_state_rates(
     for (state, _) in &description.states {
         let name = format!("{}{}", state.text, syntax::RATE_OF_STATE);
         let written = description.outputs.iter().find(|output| output.name.text == name);
-        let rate = functions.iter().find(|f| f.id == catalogue::Id::Output && f.name == name);
+        let rate = functions.iter().find(|f| f.id == catalogue::GeneratedId::Output && f.name == name);
         if let Some(written) = written
             && rate.is_none_or(|f| f.arguments.contains(&catalogue::Argument::A))
         {
@@ -428,7 +446,7 @@ fn check_output_names(
         let names: Vec<String> = asked.map(|(suffix, ..)| format!("{name}{suffix}")).collect();
         names.into_iter()
     };
-    let find_output_without_suffix = |name: &str| {
+    let find_output_by_stripped_suffix = |name: &str| {
         let asked = suffixes.iter().filter(|(.., asked)| *asked);
         asked
             .flat_map(|suffix| outputs.iter().map(move |output| (suffix, &output.name.text)))
@@ -441,7 +459,7 @@ fn check_output_names(
     };
     for name in outputs.iter().map(|output| &output.name) {
         let text = &name.text;
-        if let Some(((suffix, what, _), other)) = find_output_without_suffix(text) {
+        if let Some(((suffix, what, _), other)) = find_output_by_stripped_suffix(text) {
             cx.report_error(name.place.clone(), format!("`{text}` {what} of the output `{other}`")).add_help(
                 format!("each output has a function of its name and one of its name with `{suffix}`"),
             );

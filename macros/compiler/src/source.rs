@@ -9,7 +9,7 @@ use proc_macro2::TokenStream;
 use std::path::{Path, PathBuf};
 
 /// Parsed source of a mechanism with its imported file.
-pub struct Source {
+pub struct ParsedSource {
     /// Contents of the struct and of the imported file.
     pub mechanism: Mechanism,
     /// Paths of all files that were read for the mechanism.
@@ -20,12 +20,12 @@ pub struct Source {
 
 /// Parses the struct and imports its file. Returns `None` if the item is not a struct that can be analysed
 /// further.
-pub fn read_source(
+pub fn parse_source_and_import(
     arguments: TokenStream,
     item: TokenStream,
     folder: &Path,
     cx: &mut Diagnostics,
-) -> Option<Source> {
+) -> Option<ParsedSource> {
     let mut mechanism = syntax::parse_mechanism(arguments, item, cx)?;
     let (mut files, before) = (Vec::new(), cx.len());
     mechanism.description.drawing = mechanism.requests.drawing;
@@ -42,7 +42,7 @@ pub fn read_source(
         }
     }
     files.extend(import::read_hulls(&mut mechanism.description, folder, cx));
-    Some(Source { mechanism, files, imported: cx.len() == before })
+    Some(ParsedSource { mechanism, files, imported: cx.len() == before })
 }
 
 /// Merges the mechanism of an imported file into the description. Elements of the file precede those of the
@@ -133,7 +133,7 @@ fn merge_imported_file(mechanism: &mut Mechanism, imported: import::ImportedMech
     }
 }
 
-impl Source {
+impl ParsedSource {
     /// Returns the fields that are tables, with the number of variables of each.
     pub fn tables_with_variable_counts(&self) -> Vec<(String, usize)> {
         let tables = &self.mechanism.description.tables;
@@ -146,12 +146,16 @@ impl Source {
     }
 
     /// Emits the Rust code of the compiled mechanism.
-    pub fn emit_mechanism(&self, m: &mechanism::Model<'_>, output: &derive::Output) -> GeneratedCode {
+    pub fn emit_mechanism(
+        &self,
+        m: &mechanism::Model<'_>,
+        output: &derive::DerivationOutput,
+    ) -> GeneratedCode {
         emit::emit_mechanism(&self.public_interface(m, output), output)
     }
 
     /// Returns the public interface of the compiled mechanism.
-    fn public_interface(&self, m: &mechanism::Model<'_>, output: &derive::Output) -> Interface<'_> {
+    fn public_interface(&self, m: &mechanism::Model<'_>, output: &derive::DerivationOutput) -> Interface<'_> {
         let bare = self.model_independent_interface();
         let base = output.constants.iter().find(|constant| constant.name == "BASE_PARAMETERS");
         let base = base.map_or(0, |constant| constant.list.len());
@@ -171,7 +175,7 @@ impl Source {
             contacts: emit::UnilateralContact::from_model(m),
             polytopes: emit::ContactPolytopes::from_model(m),
             limits: emit::CoordinateLimitIndices::from_model(m),
-            figures: emit::ParameterCondition::from_model(m),
+            figures: emit::ParameterCondition::conditions_of_model(m),
             absent: emit::items_that_mechanism_lacks(&facts, &output.functions, &bare.outputs),
             facts,
             ..bare
@@ -252,7 +256,7 @@ impl Source {
         }
         let equilibria = self.mechanism.description.equilibria.iter();
         let unknown: Vec<_> = equilibria.map(|e| (e.name.text.clone(), Default::default())).collect();
-        constants.extend(derive::AssociatedConstant::linear_equations(&unknown));
+        constants.extend(derive::AssociatedConstant::linear_equation_constants(&unknown));
         if facts.requests.drawing {
             constants.push(derive::AssociatedConstant::drawing_pieces_constant(&[]));
         }
@@ -333,7 +337,9 @@ impl Source {
 
 /// Returns true for valid identifiers that are not reserved for generated items.
 pub(crate) fn is_unreserved_identifier(name: &str) -> bool {
-    syn::parse_str::<syn::Ident>(name).is_ok() && !catalogue::is_constant(name) && !name.starts_with("__")
+    syn::parse_str::<syn::Ident>(name).is_ok()
+        && !catalogue::is_known_constant_name(name)
+        && !name.starts_with("__")
 }
 
 /// Returns the documentation line of a joint: its type and the bodies that it connects.

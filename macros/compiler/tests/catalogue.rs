@@ -5,11 +5,11 @@ mod generated;
 mod mechanisms;
 
 use linkwork_compiler::catalogue::{self, Facts};
-use linkwork_compiler::derive::Output;
+use linkwork_compiler::derive::DerivationOutput;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::mechanism::Model;
-use linkwork_compiler::{compile, expand, read_source};
+use linkwork_compiler::{compile, expand, parse_source_and_import};
 use mechanisms::MECHANISMS;
 use proc_macro2::TokenStream;
 use std::collections::BTreeSet;
@@ -20,16 +20,16 @@ fn mechanism_tokens((attribute, name, fields): (&str, &str, &str)) -> (TokenStre
 }
 
 /// Compiles a mechanism of the test and calls `f` with its model, facts and generated functions.
-fn with_compiled_mechanism<T>(
+fn call_with_compiled_mechanism<T>(
     mechanism: (&str, &str, &str),
-    f: impl FnOnce(&Model<'_>, Facts, Output) -> T,
+    f: impl FnOnce(&Model<'_>, Facts, DerivationOutput) -> T,
 ) -> T {
     let (attribute, item) = mechanism_tokens(mechanism);
     let mut cx = Diagnostics::new();
-    let source = read_source(attribute, item, Path::new(""), &mut cx).unwrap();
+    let source = parse_source_and_import(attribute, item, Path::new(""), &mut cx).unwrap();
     let graph = Graph::new();
     let Some((model, output)) = compile(&source, &graph, &mut cx) else {
-        panic!("{}: {:?}", mechanism.1, cx.messages());
+        panic!("{}: {:?}", mechanism.1, cx.full_message_texts());
     };
     f(&model, Facts::from_model(&model, source.mechanism.requests), output)
 }
@@ -92,7 +92,7 @@ fn catalogue_rows_and_functions_correspond() {
     for mechanism in MECHANISMS {
         let (attribute, item) = mechanism_tokens(mechanism);
         let text = expand(attribute, item, Path::new("")).text;
-        let (facts, outputs) = with_compiled_mechanism(mechanism, |model, facts, _| {
+        let (facts, outputs) = call_with_compiled_mechanism(mechanism, |model, facts, _| {
             (facts, model.outputs.iter().map(|output| output.name.clone()).collect::<Vec<_>>())
         });
         let names = public_function_names(&text, mechanism.1);
@@ -110,7 +110,7 @@ fn catalogue_rows_and_functions_correspond() {
 #[test]
 fn absent_functions_have_one_reason_each() {
     for mechanism in MECHANISMS {
-        with_compiled_mechanism(mechanism, |_, facts, _| {
+        call_with_compiled_mechanism(mechanism, |_, facts, _| {
             let present: BTreeSet<&str> = catalogue::function_catalogue_rows()
                 .filter(|row| row.first_unmet_need(&facts).is_none())
                 .map(|row| row.name)
@@ -151,7 +151,7 @@ fn programs_with_wrong_result_counts_are_detected() {
     let limbs = trunk.to_string() + &(0..4).map(limb_declarations).collect::<String>();
     let alike = ("gravity = -9.81 * y", "Alike", limbs.as_str());
     for mechanism in MECHANISMS.into_iter().chain([alike]) {
-        with_compiled_mechanism(mechanism, |_, _, mut output| {
+        call_with_compiled_mechanism(mechanism, |_, _, mut output| {
             assert_eq!(output.function_with_mismatched_program(), None, "{}", mechanism.1);
             for k in 0..output.functions.len() {
                 let Some(last) = output.functions[k].program.outputs.pop() else { continue };

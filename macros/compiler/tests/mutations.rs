@@ -6,7 +6,7 @@
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::resolve::build_model;
-use linkwork_compiler::{check_elements_without_syntax_errors, read_source};
+use linkwork_compiler::{check_elements_without_syntax_errors, parse_source_and_import};
 use proc_macro2::{Group, TokenStream, TokenTree};
 use quote::ToTokens;
 use std::collections::BTreeMap;
@@ -167,13 +167,13 @@ fn misspell_token(token: TokenTree, random: &mut Random) -> TokenTree {
 /// Returns the messages of the parser and the model.
 fn parser_and_model_messages(arguments: &TokenStream, item: TokenStream) -> Vec<String> {
     let mut cx = Diagnostics::new();
-    if let Some(source) = read_source(arguments.clone(), item, Path::new(""), &mut cx) {
+    if let Some(source) = parse_source_and_import(arguments.clone(), item, Path::new(""), &mut cx) {
         match cx.is_empty() {
             true => drop(build_model(&source.mechanism.description, &Graph::new(), &mut cx)),
             false => check_elements_without_syntax_errors(&source, &Graph::new(), &mut cx),
         }
     }
-    cx.messages()
+    cx.full_message_texts()
 }
 
 /// Returns the first line of a message without its names: the class of the message.
@@ -204,21 +204,21 @@ fn single_token_mutations_get_short_errors() {
         let text = item.to_string();
         let begun = Instant::now();
         let run = std::panic::catch_unwind(|| parser_and_model_messages(&subject.arguments, item));
-        let mut blame = |what: String| {
+        let mut record_failure = |what: String| {
             let example = format!("case {case}, {} {kind:?}: {text}", subject.name);
             wrong.entry(what).or_insert((0, example)).0 += 1;
         };
         if begun.elapsed() > PATIENCE {
-            blame("slow".to_string());
+            record_failure("slow".to_string());
         }
         match run {
-            Err(_) => blame("panics".to_string()),
+            Err(_) => record_failure("panics".to_string()),
             Ok(found) => {
                 if found.len() > MAX_ERRORS {
-                    blame(format!("{} errors:\n{}", found.len(), found.join("\n")));
+                    record_failure(format!("{} errors:\n{}", found.len(), found.join("\n")));
                 }
                 for message in found.iter().filter(|m| !m.contains("= help: ")) {
-                    blame(format!("no help: {}", message_without_names(message)));
+                    record_failure(format!("no help: {}", message_without_names(message)));
                 }
             }
         }
@@ -231,13 +231,13 @@ fn single_token_mutations_get_short_errors() {
 /// Returns the error messages of the parser alone, before the model is built.
 fn parser_messages(arguments: &TokenStream, item: TokenStream) -> Vec<String> {
     let mut cx = Diagnostics::new();
-    read_source(arguments.clone(), item, Path::new(""), &mut cx);
-    cx.messages()
+    parse_source_and_import(arguments.clone(), item, Path::new(""), &mut cx);
+    cx.full_message_texts()
 }
 
 /// Returns the mechanism with a syntax error in one field: an unknown argument, or an invalid type of a
 /// parameter.
-fn with_syntax_error(item: &TokenStream, at: usize) -> Option<TokenStream> {
+fn mechanism_with_syntax_error(item: &TokenStream, at: usize) -> Option<TokenStream> {
     let mut item: syn::ItemStruct = syn::parse2(item.clone()).unwrap();
     let field = item.fields.iter_mut().nth(at)?;
     match field.attrs.iter_mut().find(|a| !a.path().is_ident("doc")) {
@@ -256,7 +256,7 @@ fn unreadable_field_causes_no_other_errors() {
     let mut tried = 0;
     for subject in gallery_mechanisms() {
         let fields = syn::parse2::<syn::ItemStruct>(subject.item.clone()).unwrap().fields.len();
-        for item in (0..fields).filter_map(|at| with_syntax_error(&subject.item, at)) {
+        for item in (0..fields).filter_map(|at| mechanism_with_syntax_error(&subject.item, at)) {
             tried += 1;
             let grammar = parser_messages(&subject.arguments, item.clone());
             let all = parser_and_model_messages(&subject.arguments, item);

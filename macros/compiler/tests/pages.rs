@@ -6,10 +6,10 @@ use linkwork_compiler::syntax::{ElementKind, ForceKind, JointKind, RequestOption
 use std::path::Path;
 
 /// Files by their paths in the repository, each with the form in which `NAME` appears.
-type Places = &'static [(&'static str, &'static str)];
+type FilesWithNameForms = &'static [(&'static str, &'static str)];
 
 /// Checks that names are on pages, and fails with the files in which names are missing.
-fn check_names_on_pages(names: &[String], places: Places) {
+fn check_names_on_pages(names: &[String], places: FilesWithNameForms) {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let mut missing = Vec::new();
     for (path, form) in places {

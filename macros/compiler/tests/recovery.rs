@@ -70,22 +70,23 @@ const MECHANISMS: [(&str, &str); 5] = [
 ];
 
 /// Map from the name to arguments and result; `None` for constants.
-type Names = BTreeMap<String, Option<String>>;
+type SignaturesByName = BTreeMap<String, Option<String>>;
 
 struct GeneratedItems {
     /// Names of the functions and constants that each generated struct has.
-    present: Names,
+    present: SignaturesByName,
     /// Absent functions of a mechanism, with the bound that names the reason.
     absent: BTreeMap<String, String>,
     /// Traits that the generated structs implement.
     traits: BTreeSet<String>,
 }
 
-fn generate_code(arguments: &str, name: &str, fields: &str) -> GeneratedItems {
+fn generate_items(arguments: &str, name: &str, fields: &str) -> GeneratedItems {
     let item = format!("pub struct {name} {{ {fields} }}");
     let emitted = expand(arguments.parse().unwrap(), item.parse().unwrap(), Path::new(""));
     let file: syn::File = syn::parse2(emitted.into_tokens().unwrap()).unwrap();
-    let mut all = GeneratedItems { present: Names::new(), absent: BTreeMap::new(), traits: BTreeSet::new() };
+    let mut all =
+        GeneratedItems { present: SignaturesByName::new(), absent: BTreeMap::new(), traits: BTreeSet::new() };
     for item in generated::items_of_generated_code(file) {
         if let Item::Impl(block) = item {
             all.read_implementation(&block);
@@ -211,8 +212,8 @@ fn errors_elsewhere_preserve_output_arguments() {
         let messages = expand("".parse().unwrap(), item.parse().unwrap(), Path::new("")).tokens.to_string();
         let error = messages.find("compile_error").map(|at| &messages[at..]);
         assert_eq!(error, None, "{function}");
-        let whole = generate_code("", "Measured", &fields);
-        let failed = generate_code("", "Measured", &format!("{fields} {MISTAKE}"));
+        let whole = generate_items("", "Measured", &fields);
+        let failed = generate_items("", "Measured", &format!("{fields} {MISTAKE}"));
         let signature_of_measure = |all: &GeneratedItems| all.present.get("Measured::measure").cloned();
         assert!(signature_of_measure(&whole).is_some(), "{function}");
         assert_eq!(signature_of_measure(&failed), signature_of_measure(&whole), "{function}");
@@ -289,8 +290,8 @@ fn internal_functions_are_hidden_from_documentation() {
 fn all_names_remain_defined_after_an_error() {
     for (name, fields) in MECHANISMS {
         for words in ["", "derivatives", "batch", WORDS] {
-            let whole = generate_code(words, name, fields);
-            let failed = generate_code(words, name, &format!("{fields} {MISTAKE}"));
+            let whole = generate_items(words, name, fields);
+            let failed = generate_items(words, name, &format!("{fields} {MISTAKE}"));
             for (function, arguments) in &whole.present {
                 assert_eq!(failed.present.get(function), Some(arguments), "{name}, {words}: `{function}`");
             }
@@ -311,7 +312,7 @@ fn all_names_remain_defined_after_an_error() {
 fn missing_option_is_named_by_every_dependent_function() {
     let function_name = |name: &str| name.split_once("::").unwrap().1.to_string();
     for (name, fields) in MECHANISMS {
-        let (bare, all) = (generate_code("", name, fields), generate_code(WORDS, name, fields));
+        let (bare, all) = (generate_items("", name, fields), generate_items(WORDS, name, fields));
         // A function that all options together add is present without them, or reports why it is absent.
         for function in all.present.keys().filter(|function| function.starts_with(name)) {
             let known = bare.present.contains_key(function) || bare.absent.contains_key(function);
@@ -324,7 +325,7 @@ fn missing_option_is_named_by_every_dependent_function() {
         let one_less = WORDS.split(", ").filter(|_| ["CartPole", "FourBar"].contains(&name));
         for word in one_less {
             let others: Vec<&str> = WORDS.split(", ").filter(|other| *other != word).collect();
-            let without = generate_code(&others.join(", "), name, fields);
+            let without = generate_items(&others.join(", "), name, fields);
             let lost = all.present.keys().filter(|function| !without.present.contains_key(*function));
             for function in lost.filter(|function| !function.starts_with("Prepared") || word != "prepare") {
                 let reason = without.absent.get(function).map(|reason| reason.to_lowercase());
@@ -357,7 +358,7 @@ fn missing_option_is_named_by_every_dependent_function() {
 
 #[test]
 fn kinematic_mechanisms_explain_missing_functions() {
-    let kinematic = generate_code(
+    let kinematic = generate_items(
         "inertia = none",
         "CartPole",
         "#[body] cart: Body, #[joint(ground -> cart, along = x)] rail: Sleeve,",

@@ -317,9 +317,11 @@ fn snapshot_difference(name: &str, text: &str) -> Option<String> {
     }
     let expected = fs::read_to_string(&path).unwrap_or_default();
     let lines = text.lines().count().max(expected.lines().count());
-    let endless_line = |text: &'static str| std::iter::repeat(text);
-    let both =
-        text.lines().chain(endless_line("(no more)")).zip(expected.lines().chain(endless_line("(no more)")));
+    let repeat_line_endlessly = |text: &'static str| std::iter::repeat(text);
+    let both = text
+        .lines()
+        .chain(repeat_line_endlessly("(no more)"))
+        .zip(expected.lines().chain(repeat_line_endlessly("(no more)")));
     let (k, (now, before)) = both.take(lines).enumerate().find(|(_, (now, before))| now != before)?;
     Some(format!("{name}.txt, line {}:\n  before: {before}\n  now:    {now}", k + 1))
 }

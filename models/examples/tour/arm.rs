@@ -142,7 +142,7 @@ pub fn arm_tour_section() -> Result<Section, Box<dyn std::error::Error>> {
 }
 
 /// Returns desired position, velocity and acceleration of the fingertips, relative to the start.
-fn desired_figure_eight(t: f64) -> [Vector3<f64>; 3] {
+fn desired_figure_eight_motion(t: f64) -> [Vector3<f64>; 3] {
     // Phase from 0 to 2 turns, with zero velocity and acceleration at both ends.
     let s = (t / DRAWING).clamp(0.0, 1.0);
     let turns = 2.0 * TAU;
@@ -181,7 +181,7 @@ impl TaskSpaceController {
     fn control_torques(&mut self, t: f64, q: &JointVector, v: &JointVector) -> JointVector {
         let arm = PandaArm;
         let tip = frame!(PandaArm, "panda_hand_tcp");
-        let [at, velocity, acceleration] = desired_figure_eight(t);
+        let [at, velocity, acceleration] = desired_figure_eight_motion(t);
         let hand = arm.frame_placement(tip, q);
         let twist = arm.frame_velocity(tip, q, v);
         let jacobian = arm.frame_jacobian(tip, q);
@@ -233,7 +233,7 @@ fn simulate_drawing(load: f64, observing: bool) -> Result<ArmRun, Error> {
     let samples: Vec<_> = run.collect::<Result<_, _>>()?;
     let home = pose_of_hand(&HOME.into()).translation.vector;
     let tracking_error = |s: &Sample<f64, 7, 7, 7>| {
-        (pose_of_hand(&s.q).translation.vector - home - desired_figure_eight(s.t)[0]).norm()
+        (pose_of_hand(&s.q).translation.vector - home - desired_figure_eight_motion(s.t)[0]).norm()
     };
     Ok(ArmRun { error: samples.iter().map(tracking_error).collect(), felt: controller.felt, samples, cost })
 }
@@ -278,14 +278,14 @@ fn function_timings(samples: &[Sample<f64, 7, 7, 7>]) -> [(&'static str, [f64; 2
     let states: Vec<(JointVector, JointVector, JointVector)> =
         samples.iter().step_by(100).map(|s| (s.q, s.v, s.u * 0.1)).collect();
     let median_and_least_time = |f: &dyn Fn(&JointVector, &JointVector, &JointVector) -> f64| {
-        let time_per_call_in_batch = || {
+        let mean_time_per_call = || {
             let start = Instant::now();
             for (q, v, a) in &states {
                 black_box(f(black_box(q), black_box(v), black_box(a)));
             }
             start.elapsed().as_nanos() as f64 / states.len() as f64
         };
-        let times: Vec<f64> = (0..400).map(|_| time_per_call_in_batch()).collect();
+        let times: Vec<f64> = (0..400).map(|_| mean_time_per_call()).collect();
         [median_time(&times), times.iter().copied().fold(f64::INFINITY, f64::min)]
     };
     let tip = frame!(PandaArm, "panda_hand_tcp");
@@ -338,7 +338,8 @@ fn scene_of_run(run: &ArmRun) -> Scene {
         Part::Ball(29, 0.045, Tone::Second),
     ]);
     let home = pose_of_hand(&HOME.into()).translation.vector;
-    let guide = (0..=120).map(|k| (home + desired_figure_eight(DRAWING / 2.0 * k as f64 / 120.0)[0]).into());
+    let guide =
+        (0..=120).map(|k| (home + desired_figure_eight_motion(DRAWING / 2.0 * k as f64 / 120.0)[0]).into());
     let every = (1.0 / (RATE * PERIOD)).round() as usize;
     Scene {
         title: "Figure eight with an unknown load",

@@ -181,7 +181,7 @@ fn scene_of_samples(samples: &[Sample<f64, 2, 2, 1>], caught: f64) -> Scene {
         Part::Arrow(10, 11, Tone::Second),
     ];
     parts.extend(faces_of_box(2, Tone::Body));
-    let sample_index = |t: f64| (t * RATE) as usize;
+    let sample_index_at_time = |t: f64| (t * RATE) as usize;
     Scene {
         title: "Swing-up, catch, shove",
         rate: RATE,

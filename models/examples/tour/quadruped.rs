@@ -107,7 +107,7 @@ pub fn run_quadruped_tour() -> Result<Section, Box<dyn std::error::Error>> {
 /// Returns the desired joint angles of the legs at a time.
 fn desired_posture(t: f64) -> SVector<f64, 12> {
     let part = t / FLIGHT;
-    let smooth_step_between = |[from, to]: [f64; 2], part: f64| {
+    let smoothstep_over_interval = |[from, to]: [f64; 2], part: f64| {
         let s = ((part - from) / (to - from)).clamp(0.0, 1.0);
         s * s * (3.0 - 2.0 * s)
     };
@@ -115,7 +115,8 @@ fn desired_posture(t: f64) -> SVector<f64, 12> {
         let (leg, joint) = (k / 3, k % 3);
         // The left hind leg is delayed.
         let late = if leg == 2 { 0.04 } else { 0.0 };
-        let tuck = smooth_step_between(TUCKING, part - late) - smooth_step_between(OPENING, part - late);
+        let tuck =
+            smoothstep_over_interval(TUCKING, part - late) - smoothstep_over_interval(OPENING, part - late);
         let bend = if leg < 2 { 1.0 } else { -1.0 };
         match joint {
             0 => 0.0,
@@ -235,7 +236,7 @@ fn scene_of_samples(samples: &[QuadrupedSample]) -> Scene {
         let t = FLIGHT * k as f64 / 60.0;
         (start + Vector3::from(TAKE_OFF) * t - Vector3::z() * (G * t * t / 2.0)).into()
     };
-    let sample_index = |part: f64| (part * FLIGHT * RATE) as usize;
+    let sample_index_at_flight_fraction = |part: f64| (part * FLIGHT * RATE) as usize;
     Scene {
         title: "Somersault of Solo 12, a quarter of its speed",
         rate: RATE,

@@ -117,13 +117,13 @@ impl Part {
     }
 }
 
-fn join_point_lists(lists: &[Vec<Point>]) -> String {
-    let join_coordinates = |points: &Vec<Point>| {
+fn point_lists_json(lists: &[Vec<Point>]) -> String {
+    let points_json = |points: &Vec<Point>| {
         let numbers: Vec<String> =
             points.iter().flatten().map(|x| format!("{}", (x * 1e5).round() as i64)).collect();
         format!("[{}]", numbers.join(","))
     };
-    lists.iter().map(join_coordinates).collect::<Vec<_>>().join(",")
+    lists.iter().map(points_json).collect::<Vec<_>>().join(",")
 }
 
 /// Returns a point of a body, given in body axes, in ground coordinates.

@@ -27,7 +27,7 @@ pub fn run_top_tour() -> Result<Section, Box<dyn std::error::Error>> {
     let method = DormandPrince::new().tolerance(1e-12, 1e-12);
     let mut table = Table { head: vec!["", "simulated", "closed form"], rows: Vec::new() };
     let mut checks = Vec::new();
-    let mut compare = |row: &str, what, unit: &str, simulated: f64, closed: f64| {
+    let mut add_closed_form_comparison = |row: &str, what, unit: &str, simulated: f64, closed: f64| {
         let cells = [simulated, closed].map(|x| format!("{x:.9} {unit}"));
         table.rows.push([vec![row.to_string()], cells.to_vec()].concat());
         checks.push(UpperBoundCheck::new(what, (simulated / closed - 1.0).abs(), 1e-9));
@@ -40,7 +40,7 @@ pub fn run_top_tour() -> Result<Section, Box<dyn std::error::Error>> {
     let end = simulate(&TOP).from(q, omega).method(method).duration(TURNS * TAU / rate).finish()?;
     let tip = axis_of_top(&end.q);
     let missed = tip.x.atan2(-tip.y);
-    compare(
+    add_closed_form_comparison(
         "steady precession",
         "steady precession, relative error",
         "rad/s",
@@ -57,7 +57,7 @@ pub fn run_top_tour() -> Result<Section, Box<dyn std::error::Error>> {
         (rotation_of_top(q) * Vector3::new(v.y, -v.x, 0.0)).z
     };
     let bottom = released.until_crossing(Crossing::Rising, axis_height_rate).finish()?;
-    compare(
+    add_closed_form_comparison(
         "released: lowest inclination",
         "lowest inclination, relative error",
         "rad",

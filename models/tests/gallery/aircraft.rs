@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, assert_near};
+use crate::testing::{assert_matrix_close, assert_number_close};
 use linkwork::nalgebra::{UnitQuaternion, Vector3};
 use linkwork::prelude::*;
 use linkwork_models::Aircraft;
@@ -48,17 +48,17 @@ fn trimmed_level_flight_has_zero_acceleration() {
     let elevator = -(A.cm_0 + A.cm_alpha * alpha) / A.cm_elevator;
     let attitude = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), alpha);
     let (q, v) = aircraft_state(attitude, Vector3::new(speed, 0.0, 0.0), Vector3::zeros());
-    assert_close(A.angle_of_attack(&q, &v), alpha, 1e-14);
-    assert_close(A.airspeed(&q, &v), speed, 1e-14);
+    assert_number_close(A.angle_of_attack(&q, &v), alpha, 1e-14);
+    assert_number_close(A.airspeed(&q, &v), speed, 1e-14);
     let tau = A.generalized_forces(&q, &v, &[elevator, thrust].into());
-    assert_near(A.forward_dynamics(&q, &v, &tau), SVector::zeros(), 1e-12);
+    assert_matrix_close(A.forward_dynamics(&q, &v, &tau), SVector::zeros(), 1e-12);
 
     // After a small pitch-up the moment lowers the nose.
     let nose_up = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), alpha + 0.01);
     let (q, v) = aircraft_state(nose_up, Vector3::new(speed, 0.0, 0.0), Vector3::zeros());
     let tau = A.generalized_forces(&q, &v, &[elevator, thrust].into());
     let back = A.forward_dynamics(&q, &v, &tau)[4];
-    assert_close(back, load * A.chord * A.cm_alpha * 0.01 / A.iyy, 1e-12);
+    assert_number_close(back, load * A.chord * A.cm_alpha * 0.01 / A.iyy, 1e-12);
 }
 
 /// Checks that a glider without drag has a constant velocity in body axes in a level turn.
@@ -73,5 +73,5 @@ fn glider_keeps_velocity_in_level_turn() {
         * UnitQuaternion::from_axis_angle(&Vector3::y_axis(), alpha);
     let (q, v) = aircraft_state(attitude, Vector3::new(speed, 0.0, 0.0), Vector3::new(0.0, 0.0, rate));
     let a = smooth.forward_dynamics(&q, &v, &SVector::zeros());
-    assert_near(a.fixed_rows::<3>(0).into_owned(), SVector::zeros(), 1e-12);
+    assert_matrix_close(a.fixed_rows::<3>(0).into_owned(), SVector::zeros(), 1e-12);
 }

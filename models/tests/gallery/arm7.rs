@@ -1,4 +1,4 @@
-use crate::testing::{assert_near, pose_about_z, pose_along_and_about_x};
+use crate::testing::{assert_matrix_close, pose_along_and_about_x, pose_along_and_about_z};
 use linkwork::nalgebra::Isometry3;
 use linkwork::prelude::*;
 use linkwork_models::{LoadedPanda, Panda, PandaArm};
@@ -13,14 +13,14 @@ fn panda_flange_matches_denavit_hartenberg() {
     let alpha = [0.0, -1.0, 1.0, 1.0, -1.0, 1.0, 1.0].map(|sign| sign * FRAC_PI_2);
     let mut flange = Isometry3::identity();
     for k in 0..7 {
-        flange = flange * pose_along_and_about_x(alpha[k], a[k]) * pose_about_z(Q[k], d[k]);
+        flange = flange * pose_along_and_about_x(alpha[k], a[k]) * pose_along_and_about_z(Q[k], d[k]);
     }
-    flange *= pose_about_z(0.0, 0.107);
+    flange *= pose_along_and_about_z(0.0, 0.107);
     let found = PandaArm.frame_placement(frame!(PandaArm, "panda_link8"), &Q.into());
-    assert_near(found.to_homogeneous(), flange.to_homogeneous(), 1e-14);
+    assert_matrix_close(found.to_homogeneous(), flange.to_homogeneous(), 1e-14);
     let tip = PandaArm.frame_placement(frame!(PandaArm, "panda_hand_tcp"), &Q.into());
-    let expected = flange * pose_about_z(-FRAC_PI_2 / 2.0, 0.1034);
-    assert_near(tip.to_homogeneous(), expected.to_homogeneous(), 1e-14);
+    let expected = flange * pose_along_and_about_z(-FRAC_PI_2 / 2.0, 0.1034);
+    assert_matrix_close(tip.to_homogeneous(), expected.to_homogeneous(), 1e-14);
 }
 
 /// Checks that locked fingers do not move: the mass matrix is the upper left part of the full robot's.
@@ -29,7 +29,7 @@ fn locked_fingers_do_not_move() {
     let mut full = Panda.neutral();
     full.fixed_rows_mut::<7>(0).copy_from(&SVector::from(Q));
     let part = Panda.mass_matrix(&full).fixed_view::<7, 7>(0, 0).into_owned();
-    assert_near(PandaArm.mass_matrix(&Q.into()), part, 1e-14);
+    assert_matrix_close(PandaArm.mass_matrix(&Q.into()), part, 1e-14);
 }
 
 /// Checks that the load adds `Jᵀ m J` to the mass matrix and `−Jᵀ m g` to the bias forces.
@@ -40,8 +40,8 @@ fn load_adds_its_jacobian_terms() {
     let jacobian = arm.frame_jacobian(frame!(PandaArm, "panda_hand_tcp"), &q);
     let linear = jacobian.fixed_rows::<3>(0).into_owned();
     let added = loaded.mass_matrix(&q) - arm.mass_matrix(&q);
-    assert_near(added, 2.5 * linear.transpose() * linear, 1e-13);
+    assert_matrix_close(added, 2.5 * linear.transpose() * linear, 1e-13);
     let rest = SVector::zeros();
     let weight = loaded.bias_forces(&q, &rest) - arm.bias_forces(&q, &rest);
-    assert_near(weight, 2.5 * 9.81 * linear.row(2).transpose(), 1e-13);
+    assert_matrix_close(weight, 2.5 * 9.81 * linear.row(2).transpose(), 1e-13);
 }

@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, assert_near, elliptic_integral, precise_integrator};
+use crate::testing::{assert_matrix_close, assert_number_close, elliptic_integral, precise_integrator};
 use linkwork::nalgebra::Vector3;
 use linkwork::prelude::*;
 use linkwork_models::BallInBowl;
@@ -27,7 +27,7 @@ fn ball_in_bowl_has_pendulum_period() -> Result<(), Error> {
         let length = 1.4 * (B.bowl - B.radius);
         let period = 4.0 * (length / B.g).sqrt() * elliptic_integral((theta / 2.0).sin().powi(2));
         let crossing = if end.t < 0.75 * period { period / 2.0 } else { period };
-        assert_close(end.t, crossing, 1e-7);
+        assert_number_close(end.t, crossing, 1e-7);
     }
     Ok(())
 }
@@ -47,7 +47,7 @@ fn spinning_ball_circles_in_bowl() -> Result<(), Error> {
         let end = simulate(&B).from(q, v).method(precise_integrator()).duration(time).finish()?;
         let (s, c) = (rate * time).sin_cos();
         let found = end.q.fixed_rows::<3>(0).into_owned();
-        assert_near(found, [q[0] * c, q[0] * s, q[2]].into(), 1e-8);
+        assert_matrix_close(found, [q[0] * c, q[0] * s, q[2]].into(), 1e-8);
     }
     Ok(())
 }

@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, assert_near, precise_integrator};
+use crate::testing::{assert_matrix_close, assert_number_close, precise_integrator};
 use linkwork::nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use linkwork::prelude::*;
 use linkwork_models::BallInDish;
@@ -32,20 +32,20 @@ fn ball_circles_at_constant_height_in_dish() -> Result<(), Error> {
         let rate = (-linear + (linear * linear + 4.0 * square * B.g * c).sqrt()) / (2.0 * square);
         let (q, v) = state_of_ball_on_dish(u, 0.0, [0.0, rate * rho], spin);
         assert!(B.constraint_residuals(&q).amax() < 1e-16);
-        assert_close(v[1], rate * u, 1e-13);
+        assert_number_close(v[1], rate * u, 1e-13);
         let (_, lambda) = B.constrained_dynamics(&q, &v, &SVector::zeros());
         let constraint_index =
             |name| BallInDish::CONSTRAINTS.iter().position(|c| *c == name).expect("it is one");
         let normal = B.mass * (rate * rate * rho * c + B.g * s);
-        assert_close(lambda[constraint_index("contact.normal")], normal, 1e-12);
+        assert_number_close(lambda[constraint_index("contact.normal")], normal, 1e-12);
         for name in ["contact.foot_first", "contact.foot_second"] {
-            assert_close(lambda[constraint_index(name)], 0.0, 1e-12);
+            assert_number_close(lambda[constraint_index(name)], 0.0, 1e-12);
         }
         let time = 1.0;
         let end = simulate(&B).from(q, v).method(precise_integrator()).duration(time).finish()?;
         let (sine, cosine) = (rate * time).sin_cos();
         let expected = [u * cosine, u * sine, rho * cosine, rho * sine, q[4]].into();
-        assert_near(end.q.fixed_rows::<5>(0).into_owned(), expected, 1e-8);
+        assert_matrix_close(end.q.fixed_rows::<5>(0).into_owned(), expected, 1e-8);
     }
     Ok(())
 }
@@ -68,12 +68,12 @@ fn ball_in_dish_satisfies_newton_and_euler() {
         let turned = (turned - normal * normal.dot(&turned)) / size;
         let tangent = Matrix3::identity() - normal * normal.transpose();
         let expected = normal.cross(&turned) * (0.4 * B.radius * spin) - tangent * Vector3::z() * B.g;
-        assert_near(tangent * linear * 1.4, expected, 1e-11);
+        assert_matrix_close(tangent * linear * 1.4, expected, 1e-11);
         // Along the normal the geometry determines the acceleration: n · v is constantly zero.
-        assert_close(normal.dot(&linear), -turned.dot(&velocity), 1e-12);
+        assert_number_close(normal.dot(&linear), -turned.dot(&velocity), 1e-12);
         // Spin about the normal: no moment acts about it.
         let spun = Vector3::new(a[5], a[6], a[7]).dot(&normal);
-        assert_close(spun, 0.0, 1e-10);
+        assert_number_close(spun, 0.0, 1e-10);
     }
 }
 
@@ -85,7 +85,7 @@ fn ball_in_dish_conserves_energy() -> Result<(), Error> {
     let (mut lowest, mut highest) = (q[4], q[4]);
     for sample in run {
         let Sample { q: now, v: then, .. } = sample?;
-        assert_close(total_energy(&now, &then), total_energy(&q, &v), 1e-10);
+        assert_number_close(total_energy(&now, &then), total_energy(&q, &v), 1e-10);
         assert!(B.constraint_residuals(&now).amax() < 1e-13);
         let turn = UnitQuaternion::from_quaternion([now[5], now[6], now[7], now[8]].into());
         assert!((turn.norm() - 1.0).abs() < 1e-12);

@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, assert_near, precise_integrator};
+use crate::testing::{assert_matrix_close, assert_number_close, precise_integrator};
 use linkwork::nalgebra::{UnitQuaternion, Vector3};
 use linkwork::prelude::*;
 use linkwork_models::BallInFunnel;
@@ -34,11 +34,11 @@ fn ball_circles_at_constant_height_in_funnel() -> Result<(), Error> {
         assert!(B.constraint_residuals(&q).amax() < 1e-16);
         assert!(B.constraint_rates(&q, &v).amax() < 1e-14);
         let (_, lambda) = B.constrained_dynamics(&q, &v, &SVector::zeros());
-        assert_close(lambda[0], B.mass * (rate * rate * rho * c + B.g * s), 1e-13);
+        assert_number_close(lambda[0], B.mass * (rate * rate * rho * c + B.g * s), 1e-13);
         let end = simulate(&B).from(q, v).method(precise_integrator()).duration(1.0).finish()?;
         let (sine, cosine) = rate.sin_cos();
         let found = end.q.fixed_rows::<3>(0).into_owned();
-        assert_near(found, [rho * cosine, rho * sine, q[2]].into(), 1e-8);
+        assert_matrix_close(found, [rho * cosine, rho * sine, q[2]].into(), 1e-8);
     }
     Ok(())
 }
@@ -65,7 +65,7 @@ fn ball_in_funnel_conserves_integrals() -> Result<(), Error> {
     for sample in run {
         let Sample { q: now, v: then, .. } = sample?;
         lowest = lowest.min(now[2]);
-        assert_near(integrals_of_motion(&now, &then), integrals_of_motion(&q, &v), 1e-9);
+        assert_matrix_close(integrals_of_motion(&now, &then), integrals_of_motion(&q, &v), 1e-9);
     }
     assert!(lowest < 0.8 * q[2], "it sank to {lowest} only");
     Ok(())

@@ -1,4 +1,4 @@
-use crate::testing::{assert_near, precise_integrator};
+use crate::testing::{assert_matrix_close, precise_integrator};
 use linkwork::prelude::*;
 use linkwork_models::BallInTube;
 
@@ -17,7 +17,7 @@ fn ball_in_tube_rises_again() -> Result<(), Error> {
         let Sample { t, q, .. } = sample?;
         let ((s, c), (sz, cz)) = ((around * t).sin_cos(), (frequency * t).sin_cos());
         let height = middle * (1.0 - cz) + sinking / frequency * sz;
-        assert_near(q.fixed_rows::<3>(0).into_owned(), [reach * c, reach * s, height].into(), 1e-8);
+        assert_matrix_close(q.fixed_rows::<3>(0).into_owned(), [reach * c, reach * s, height].into(), 1e-8);
     }
     Ok(())
 }

@@ -1,4 +1,4 @@
-use crate::testing::{assert_near, precise_integrator};
+use crate::testing::{assert_matrix_close, precise_integrator};
 use linkwork::prelude::*;
 use linkwork_models::BallOnTurntable;
 
@@ -28,7 +28,7 @@ fn check_circular_motion(ball: BallOnTurntable) -> Result<(), Error> {
         let (s, c) = (rate * t).sin_cos();
         let x = place[0] + (velocity[0] * s - velocity[1] * (1.0 - c)) / rate;
         let y = place[1] + (velocity[0] * (1.0 - c) + velocity[1] * s) / rate;
-        assert_near(q.fixed_rows::<3>(0).into_owned(), [x, y, ball.radius].into(), 1e-9);
+        assert_matrix_close(q.fixed_rows::<3>(0).into_owned(), [x, y, ball.radius].into(), 1e-9);
     }
     Ok(())
 }

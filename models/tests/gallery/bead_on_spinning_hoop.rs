@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, assert_near, precise_integrator};
+use crate::testing::{assert_matrix_close, assert_number_close, precise_integrator};
 use linkwork::prelude::*;
 use linkwork_models::BeadOnSpinningHoop;
 use std::f64::consts::TAU;
@@ -12,10 +12,10 @@ fn bead_on_hoop_has_textbook_equation() {
         let (q, v) = (SVector::from([theta]), SVector::from([rate]));
         let (s, c) = theta.sin_cos();
         let bias = H.mass * H.g * H.radius * s - mr2 * H.spin * H.spin * s * c;
-        assert_near(H.mass_matrix(t, &q), SMatrix::<f64, 1, 1>::new(mr2), 1e-15);
-        assert_near(H.bias_forces(t, &q, &v), SVector::from([bias]), 1e-14);
+        assert_matrix_close(H.mass_matrix(t, &q), SMatrix::<f64, 1, 1>::new(mr2), 1e-15);
+        assert_matrix_close(H.bias_forces(t, &q, &v), SVector::from([bias]), 1e-14);
         let speed2 = rate * rate + H.spin * H.spin * s * s;
-        assert_close(H.kinetic_energy(t, &q, &v), mr2 * speed2 / 2.0, 1e-14);
+        assert_number_close(H.kinetic_energy(t, &q, &v), mr2 * speed2 / 2.0, 1e-14);
     }
 }
 
@@ -27,7 +27,7 @@ fn bead_oscillates_about_tilted_equilibrium() -> Result<(), Error> {
         .method(precise_integrator())
         .until_crossing(Crossing::Falling, |_, _, v| v[0])
         .finish()?;
-    assert_close(end.t, TAU / (H.spin * tilt.sin()), 1e-7);
+    assert_number_close(end.t, TAU / (H.spin * tilt.sin()), 1e-7);
     Ok(())
 }
 
@@ -41,7 +41,7 @@ fn jacobis_integral_is_conserved() -> Result<(), Error> {
     for sample in simulate(&H).from([0.2], [0.5]).method(precise_integrator()).duration(3.0).sample_every(0.5)
     {
         let Sample { q, v, .. } = sample?;
-        assert_close(jacobi_integral(&q, &v), start, 1e-10);
+        assert_number_close(jacobi_integral(&q, &v), start, 1e-10);
     }
     Ok(())
 }

@@ -1,4 +1,4 @@
-use crate::testing::assert_close;
+use crate::testing::assert_number_close;
 use linkwork::nalgebra::{Matrix2, Matrix4};
 use linkwork::prelude::*;
 use linkwork_models::Bicycle;
@@ -193,6 +193,6 @@ fn bicycle_has_published_weave_and_capsize_speeds() {
                 above = middle
             }
         }
-        assert_close(below, published, 1e-11);
+        assert_number_close(below, published, 1e-11);
     }
 }

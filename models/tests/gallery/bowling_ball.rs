@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, assert_near, precise_integrator};
+use crate::testing::{assert_matrix_close, assert_number_close, precise_integrator};
 use linkwork::nalgebra::{UnitQuaternion, Vector3};
 use linkwork::prelude::*;
 use linkwork_models::BowlingBall;
@@ -20,12 +20,12 @@ fn friction_accelerations_follow_slip() {
         let size = (slip[0] * slip[0] + slip[1] * slip[1] + regular_speed * regular_speed).sqrt();
         let [x, y] = slip.map(|s| -B.friction * B.g * s / size);
         let (a, normal) = ball.constrained_dynamics(&start_configuration(), &v, &SVector::zeros());
-        assert_close(normal[0], B.mass * B.g, 1e-14);
+        assert_number_close(normal[0], B.mass * B.g, 1e-14);
         // Acceleration in the ball's axes, which rotate.
         let linear = a.fixed_rows::<3>(0) + Vector3::new(2.0, 3.0, 5.0).cross(&Vector3::new(1.0, -0.4, 0.0));
-        assert_near(linear, [x, y, 0.0].into(), 1e-13);
+        assert_matrix_close(linear, [x, y, 0.0].into(), 1e-13);
         let arm = 2.5 / B.radius;
-        assert_near(a.fixed_rows::<3>(3).into_owned(), [arm * y, -arm * x, 0.0].into(), 1e-13);
+        assert_matrix_close(a.fixed_rows::<3>(3).into_owned(), [arm * y, -arm * x, 0.0].into(), 1e-13);
     }
 }
 
@@ -40,17 +40,17 @@ fn bowling_ball_slides_then_rolls() -> Result<(), Error> {
         simulate(&B).from(start_configuration(), v).method(precise_integrator()).duration(t).finish()
     };
     let half = roll_for_duration(time / 2.0)?;
-    assert_close(half.q[0], speed * time / 2.0 - B.friction * B.g * time * time / 8.0, 1e-6);
-    assert_close(half.v[4], 2.5 * B.friction * B.g * time / 2.0 / B.radius, 1e-6);
+    assert_number_close(half.q[0], speed * time / 2.0 - B.friction * B.g * time * time / 8.0, 1e-6);
+    assert_number_close(half.v[4], 2.5 * B.friction * B.g * time / 2.0 / B.radius, 1e-6);
     let end = roll_for_duration(1.5 * time)?;
     let pose = UnitQuaternion::from_quaternion([end.q[3], end.q[4], end.q[5], end.q[6]].into());
     let velocity = pose * Vector3::new(end.v[0], end.v[1], end.v[2]);
     // The angular momentum about the lane is constant, so that this is exact.
-    assert_near(velocity, Vector3::x() * (5.0 / 7.0 * speed), 1e-6);
-    assert_close(end.v[4] * B.radius, 5.0 / 7.0 * speed, 1e-6);
+    assert_matrix_close(velocity, Vector3::x() * (5.0 / 7.0 * speed), 1e-6);
+    assert_number_close(end.v[4] * B.radius, 5.0 / 7.0 * speed, 1e-6);
     // Sliding distance 12/49 v² / (μ g), then the rolling distance.
     let way = 12.0 / 49.0 * speed * speed / (B.friction * B.g) + 5.0 / 7.0 * speed * time / 2.0;
-    assert_close(end.q[0], way, 1e-3);
+    assert_number_close(end.q[0], way, 1e-3);
     Ok(())
 }
 
@@ -65,6 +65,6 @@ fn spinning_bowling_ball_follows_parabola() -> Result<(), Error> {
     let end =
         simulate(&B).from(start_configuration(), v).method(precise_integrator()).duration(t).finish()?;
     let [x, y] = slip.map(|s| -B.friction * B.g * s / size * t * t / 2.0);
-    assert_near(end.q.fixed_rows::<3>(0).into_owned(), [4.0 * t + x, y, B.radius].into(), 1e-6);
+    assert_matrix_close(end.q.fixed_rows::<3>(0).into_owned(), [4.0 * t + x, y, B.radius].into(), 1e-6);
     Ok(())
 }

@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, precise_integrator};
+use crate::testing::{assert_number_close, precise_integrator};
 use linkwork::prelude::*;
 use linkwork_models::BrakedFlywheel;
 
@@ -12,7 +12,7 @@ fn braked_flywheel_runs_down() -> Result<(), Error> {
     {
         let Sample { t, v, .. } = sample?;
         let left = (start / W.creep).sinh() * (-W.brake_torque * t / (W.inertia * W.creep)).exp();
-        assert_close(v[0], W.creep * left.asinh(), 1e-9);
+        assert_number_close(v[0], W.creep * left.asinh(), 1e-9);
     }
     Ok(())
 }
@@ -21,5 +21,5 @@ fn braked_flywheel_runs_down() -> Result<(), Error> {
 fn motor_drives_against_the_brake() {
     let tau = W.generalized_forces(&[0.0].into(), &[2.4].into());
     let a = W.forward_dynamics(&[0.0].into(), &[100.0].into(), &tau);
-    assert_close(a[0], (2.4 - 0.9) / 0.3, 1e-14);
+    assert_number_close(a[0], (2.4 - 0.9) / 0.3, 1e-14);
 }

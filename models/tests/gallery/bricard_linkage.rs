@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, precise_integrator};
+use crate::testing::{assert_number_close, precise_integrator};
 use linkwork::{frame, prelude::*};
 use linkwork_models::BricardLinkage;
 
@@ -39,9 +39,9 @@ fn bricard_linkage_conserves_energy() -> Result<(), Error> {
     let mut farthest = 0.0_f64;
     for sample in run {
         let Sample { q, v, .. } = sample?;
-        assert_close(B.kinetic_energy(&q, &v) + B.potential_energy(&q), start, 1e-10);
+        assert_number_close(B.kinetic_energy(&q, &v) + B.potential_energy(&q), start, 1e-10);
         let (odd, even) = (q[0].sin(), q[1].sin());
-        assert_close(odd + even + odd * even, 0.0, 1e-12);
+        assert_number_close(odd + even + odd * even, 0.0, 1e-12);
         assert!((q[2] - q[0]).abs().max((q[4] - q[0]).abs()).max((q[3] - q[1]).abs()) < 1e-11, "{q}");
         farthest = farthest.max(q[0]);
     }

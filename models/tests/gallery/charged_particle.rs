@@ -1,4 +1,4 @@
-use crate::testing::{assert_near, precise_integrator};
+use crate::testing::{assert_matrix_close, precise_integrator};
 use linkwork::prelude::*;
 use linkwork_models::ChargedParticle;
 
@@ -8,7 +8,7 @@ const P: ChargedParticle = ChargedParticle { mass: 0.2, charge: 0.8, electric: 1
 fn charged_particle_has_lorentz_force() {
     let v = SVector::from([0.4, -0.7, 2.0]);
     let force = 0.8 * SVector::from([3.0 * v[1], 1.5 - 3.0 * v[0], 0.0]);
-    assert_near(P.bias_forces(&SVector::zeros(), &v), -force, 1e-15);
+    assert_matrix_close(P.bias_forces(&SVector::zeros(), &v), -force, 1e-15);
 }
 
 #[test]
@@ -20,7 +20,7 @@ fn charged_particle_circles_and_drifts() -> Result<(), Error> {
         let Sample { t, q, .. } = sample?;
         let (s, c) = (omega * t).sin_cos();
         let expected = [drift * t + 2.0 / omega * s, 2.0 / omega * (c - 1.0), 0.3 * t];
-        assert_near(q, SVector::from(expected), 1e-9);
+        assert_matrix_close(q, SVector::from(expected), 1e-9);
     }
     Ok(())
 }

@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, assert_near};
+use crate::testing::{assert_matrix_close, assert_number_close};
 use linkwork::prelude::*;
 use linkwork_models::CoplanarDoublePendulum;
 
@@ -12,13 +12,13 @@ fn double_pendulum_matches_its_lagrangian() {
     let (s, c) = (a - b).sin_cos();
     let kinetic =
         (m1 + m2) * l1 * l1 * da * da / 2.0 + m2 * l2 * l2 * db * db / 2.0 + m2 * l1 * l2 * da * db * c;
-    assert_close(P.kinetic_energy(&q, &v), kinetic, 1e-14);
+    assert_number_close(P.kinetic_energy(&q, &v), kinetic, 1e-14);
     let potential = -(m1 + m2) * g * l1 * a.cos() - m2 * g * l2 * b.cos();
-    assert_close(P.potential_energy(&q), potential, 1e-14);
+    assert_number_close(P.potential_energy(&q), potential, 1e-14);
     // Lagrange's equations of the documented Lagrangian.
     let h1 = m2 * l1 * l2 * s * db * db + (m1 + m2) * g * l1 * a.sin();
     let h2 = -m2 * l1 * l2 * s * da * da + m2 * g * l2 * b.sin();
-    assert_near(P.bias_forces(&q, &v), SVector::from([h1, h2]), 1e-13);
+    assert_matrix_close(P.bias_forces(&q, &v), SVector::from([h1, h2]), 1e-13);
 }
 
 /// Checks that a small deflection in a mode shape has an acceleration in the same shape.
@@ -31,6 +31,6 @@ fn mode_shape_acceleration_has_the_same_shape() {
         // The first equation gives (m₁ + m₂) (g/l − ω²) φ₁ = m₂ ω² φ₂.
         let shape = SVector::from([P.m2 * omega2, sum * (P.g / l - omega2)]).normalize();
         let a = equal.forward_dynamics(&(1e-5 * shape), &SVector::zeros(), &SVector::zeros());
-        assert_near(a / 1e-5, -omega2 * shape, 1e-8);
+        assert_matrix_close(a / 1e-5, -omega2 * shape, 1e-8);
     }
 }

@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, assert_derivatives, assert_near};
+use crate::testing::{assert_acceleration_derivatives, assert_matrix_close, assert_number_close};
 use linkwork::nalgebra::{Complex, SMatrix};
 use linkwork::prelude::*;
 use linkwork::{LinearMotion, at};
@@ -39,7 +39,7 @@ fn servo_system_matrix(linear: &LinearMotion<f64, 5, 1>) -> SMatrix<f64, 6, 6> {
 #[test]
 fn servo_has_the_expected_characteristic_polynomial() {
     let v = [0.3, 0.01, -0.1, 0.02, 0.04].into();
-    assert_derivatives(&S.extended(), &[0.1].into(), &v, &[0.05].into(), 1e-6);
+    assert_acceleration_derivatives(&S.extended(), &[0.1].into(), &v, &[0.05].into(), 1e-6);
     let a = servo_system_matrix(&linearised_servo_motion(&v, 0.0)).map(|x| Complex::new(x, 0.0));
     for s in [Complex::new(2.0, 0.0), Complex::new(-3.0, 8.0), Complex::new(0.0, 40.0)] {
         let delay = s * s * (0.05 * 0.05 / 12.0) + s * 0.025 + 1.0;
@@ -60,9 +60,9 @@ fn servo_delay_changes_only_the_phase() {
         let (by_angle, by_filtered, by_drift) = (a[(3, 0)], a[(3, 2)], a[(3, 3)]);
         let drift = Complex::from(by_angle) / (s - by_drift - Complex::from(by_filtered) / s);
         let delayed = Complex::new(1.0, 0.0) - drift * 0.05;
-        assert_close(delayed.norm(), 1.0, 1e-13);
+        assert_number_close(delayed.norm(), 1.0, 1e-13);
         let x = omega * 0.05;
-        assert_close(delayed.arg(), -2.0 * (x / 2.0).atan2(1.0 - x * x / 12.0), 1e-13);
+        assert_number_close(delayed.arg(), -2.0 * (x / 2.0).atan2(1.0 - x * x / 12.0), 1e-13);
         assert!((delayed.arg() + x).abs() < x.powi(5) / 720.0);
     }
 }
@@ -75,10 +75,14 @@ fn servo_integral_stops_at_the_limit() -> Result<(), Error> {
     let run = simulate(&whole).from([0.0], ServoState::zeros()).inputs(|_, _, _| [3.0].into());
     let end = run.duration(6.0).finish()?;
     // The demand is kp e + integral, once the differential part has decayed.
-    assert_close(1.5 * 3.0 + end.v[4], 0.8 + 2.0 * 3.0 / 5.0, 1e-6);
+    assert_number_close(1.5 * 3.0 + end.v[4], 0.8 + 2.0 * 3.0 / 5.0, 1e-6);
     let a = linearised_servo_motion(&end.v, 3.0);
-    assert_close(a.acceleration[0], 0.8 / 0.02, 1e-12);
+    assert_number_close(a.acceleration[0], 0.8 / 0.02, 1e-12);
     // Under saturation the torque depends only on the speed, through friction.
-    assert_near(a.by_v.row(0).into_owned(), SMatrix::from_row_slice(&[-0.5, 0.0, 0.0, 0.0, 0.0]), 1e-13);
+    assert_matrix_close(
+        a.by_v.row(0).into_owned(),
+        SMatrix::from_row_slice(&[-0.5, 0.0, 0.0, 0.0, 0.0]),
+        1e-13,
+    );
     Ok(())
 }

@@ -1,4 +1,4 @@
-use crate::testing::assert_near;
+use crate::testing::assert_matrix_close;
 use linkwork::prelude::*;
 use linkwork_models::DoublePendulum;
 
@@ -12,10 +12,10 @@ fn double_pendulum_mass_and_bias_match_formulas() {
         let m22 = m2 * l2 * l2 / 3.0;
         let m12 = m22 + m2 * l1 * l2 * c / 2.0;
         let m11 = (m1 / 3.0 + m2) * l1 * l1 + m22 + m2 * l1 * l2 * c;
-        assert_near(p.mass_matrix(&q), SMatrix::<f64, 2, 2>::new(m11, m12, m12, m22), 1e-14);
+        assert_matrix_close(p.mass_matrix(&q), SMatrix::<f64, 2, 2>::new(m11, m12, m12, m22), 1e-14);
         let lower = m2 * g * l2 / 2.0 * f64::sin(a + b);
         let h1 = -m2 * l1 * l2 * s * (da + db / 2.0) * db + (m1 / 2.0 + m2) * g * l1 * f64::sin(a) + lower;
         let h2 = m2 * l1 * l2 / 2.0 * s * da * da + lower;
-        assert_near(p.bias_forces(&q, &v), SVector::from([h1, h2]), 1e-14);
+        assert_matrix_close(p.bias_forces(&q, &v), SVector::from([h1, h2]), 1e-14);
     }
 }

@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, assert_near, elliptic_integral, precise_integrator};
+use crate::testing::{assert_matrix_close, assert_number_close, elliptic_integral, precise_integrator};
 use linkwork::prelude::*;
 use linkwork_models::DuffingOscillator;
 use std::f64::consts::TAU;
@@ -12,8 +12,8 @@ fn duffing_oscillator_has_duffings_equation() {
     let (q, v) = (SVector::from([x]), SVector::from([dx]));
     let h = 0.2 * dx + 3.0 * x + 5.0 * x * x * x - 1.5 * f64::cos(2.1 * t);
     let found = D.inverse_dynamics(t, &q, &v, &SVector::from([0.4]));
-    assert_near(found, SVector::from([0.7 * 0.4 + h]), 1e-14);
-    assert_close(D.potential_energy(t, &q), 1.5 * x * x + 1.25 * x.powi(4), 1e-14);
+    assert_matrix_close(found, SVector::from([0.7 * 0.4 + h]), 1e-14);
+    assert_number_close(D.potential_energy(t, &q), 1.5 * x * x + 1.25 * x.powi(4), 1e-14);
 }
 
 fn period_of_oscillation(d: DuffingOscillator, start: f64) -> Result<f64, Error> {
@@ -28,7 +28,7 @@ fn duffing_period_is_elliptic_integral() -> Result<(), Error> {
         let stiff = free.beta * amplitude * amplitude;
         let sum = free.alpha + stiff;
         let expected = 4.0 * elliptic_integral(stiff / sum / 2.0) * (free.mass / sum).sqrt();
-        assert_close(period_of_oscillation(free, amplitude)?, expected, 1e-9);
+        assert_number_close(period_of_oscillation(free, amplitude)?, expected, 1e-9);
     }
     Ok(())
 }
@@ -37,7 +37,7 @@ fn duffing_period_is_elliptic_integral() -> Result<(), Error> {
 fn duffing_oscillator_has_two_wells() -> Result<(), Error> {
     let double = DuffingOscillator { damping: 0.0, drive: 0.0, alpha: -3.0, ..D };
     let well = (3.0_f64 / 5.0).sqrt();
-    assert_close(double.bias_forces(0.0, &[well].into(), &[0.0].into())[0], 0.0, 1e-15);
-    assert_close(period_of_oscillation(double, well + 1e-4)?, TAU / (6.0_f64 / 0.7).sqrt(), 1e-6);
+    assert_number_close(double.bias_forces(0.0, &[well].into(), &[0.0].into())[0], 0.0, 1e-15);
+    assert_number_close(period_of_oscillation(double, well + 1e-4)?, TAU / (6.0_f64 / 0.7).sqrt(), 1e-6);
     Ok(())
 }

@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, assert_near};
+use crate::testing::{assert_matrix_close, assert_number_close};
 use linkwork::nalgebra::{Matrix2, Vector2};
 use linkwork::{frame, prelude::*};
 use linkwork_models::FiveBar;
@@ -50,10 +50,10 @@ fn five_bar_tool_is_at_circle_intersection() {
     for (left, right) in [(2.0, 0.9), (2.4, 0.3), (1.6, 1.2)] {
         let q = linkage_configuration(left, right);
         let guess = [left, 0.7 - left, right, 2.2 - right].into();
-        assert_near(R.assemble(&guess, &[0, 2]).expect("the circles meet"), q, 1e-12);
+        assert_matrix_close(R.assemble(&guess, &[0, 2]).expect("the circles meet"), q, 1e-12);
         let [.., tool] = closed_form_positions(left, right);
         let place = R.frame_placement(frame!(FiveBar, "tool"), &q).translation.vector;
-        assert_near(place.xy(), tool, 1e-15);
+        assert_matrix_close(place.xy(), tool, 1e-15);
     }
 }
 
@@ -82,7 +82,7 @@ fn five_bar_torques_match_virtual_work_and_reduced_inertia() {
         }
         inertia += elbows[k].transpose() * elbows[k] * (R.crank_mass / 3.0);
         weight += middle.row(1) * R.forearm_mass + elbows[k].row(1) * (R.crank_mass / 2.0);
-        assert_close((at - from).norm(), R.forearm, 1e-15);
+        assert_number_close((at - from).norm(), R.forearm, 1e-15);
     }
     let hold = weight.transpose() * R.g;
     let more = Vector2::new(0.7, -0.4);
@@ -90,6 +90,6 @@ fn five_bar_torques_match_virtual_work_and_reduced_inertia() {
         [(hold, Vector2::zeros()), (hold + more, inertia.lu().solve(&more).expect("regular"))]
     {
         let a = R.forward_dynamics(&q, &zero, &R.generalized_forces(&q, &u));
-        assert_near(Vector2::new(a[0], a[2]), expected, 1e-12);
+        assert_matrix_close(Vector2::new(a[0], a[2]), expected, 1e-12);
     }
 }

@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, assert_near, precise_integrator};
+use crate::testing::{assert_matrix_close, assert_number_close, precise_integrator};
 use linkwork::nalgebra::Rotation3;
 use linkwork::prelude::*;
 use linkwork_models::{FoucaultPendulum, SphericalPendulum};
@@ -20,8 +20,8 @@ fn foucault_pendulum_feels_coriolis_force() {
     let vertical = 1e-4 * P.latitude.sin();
     let v = SVector::from([0.3, -0.5]);
     let a = fast.forward_dynamics(9.0, &SVector::zeros(), &v, &SVector::zeros());
-    assert_close(a[0] / (2.0 * vertical * v[1]), 1.0, 1e-3);
-    assert_close(a[1] / (-2.0 * vertical * v[0]), 1.0, 1e-3);
+    assert_number_close(a[0] / (2.0 * vertical * v[1]), 1.0, 1e-3);
+    assert_number_close(a[1] / (-2.0 * vertical * v[0]), 1.0, 1e-3);
 }
 
 #[test]
@@ -33,7 +33,7 @@ fn foucault_plane_rotates_with_latitude() -> Result<(), Error> {
     let end = simulate(&P).from([0.0, -1.0 / P.length], [0.0, 0.0]).method(precise_integrator());
     let place = position_of_bob(&end.duration(time).finish()?.q);
     let turned = place[1].atan2(place[0]);
-    assert_close(turned / (-P.earth_rate * P.latitude.sin() * time), 1.0, 1e-3);
+    assert_number_close(turned / (-P.earth_rate * P.latitude.sin() * time), 1.0, 1e-3);
     Ok(())
 }
 
@@ -54,6 +54,6 @@ fn foucault_plane_is_fixed_at_the_pole() -> Result<(), Error> {
     let seen = simulate(&pole).from(q, slip).method(precise_integrator()).duration(time).finish()?;
     let ground = simulate(&still).from(q, v).method(precise_integrator()).duration(time).finish()?;
     let turn = Rotation3::from_euler_angles(0.0, 0.0, pole.earth_rate * time);
-    assert_near(turn * position_of_bob(&seen.q), position_of_bob(&ground.q), 1e-8);
+    assert_matrix_close(turn * position_of_bob(&seen.q), position_of_bob(&ground.q), 1e-8);
     Ok(())
 }

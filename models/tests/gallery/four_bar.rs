@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, precise_integrator};
+use crate::testing::{assert_number_close, precise_integrator};
 use linkwork::prelude::*;
 use linkwork_models::FourBar;
 
@@ -20,12 +20,12 @@ fn four_bar_satisfies_freudensteins_equation() {
         let (crank, coupler, rocker) = (q[0], q[0] + q[1], q[2]);
         let constant = (a * a - b * b + c * c + d * d) / (2.0 * a * c);
         let cosine = d / a * rocker.cos() - d / c * crank.cos() + constant;
-        assert_close(cosine, (crank - rocker).cos(), 1e-13);
+        assert_number_close(cosine, (crank - rocker).cos(), 1e-13);
 
         let v = L.project_velocity(&q, &[2.0, 0.0, 0.0].into()).expect("no dead centre");
         let sine = (coupler - rocker).sin();
-        assert_close(v[2] / v[0], a * (coupler - crank).sin() / (c * sine), 1e-12);
-        assert_close((v[0] + v[1]) / v[0], a * (rocker - crank).sin() / (b * sine), 1e-12);
+        assert_number_close(v[2] / v[0], a * (coupler - crank).sin() / (c * sine), 1e-12);
+        assert_number_close((v[0] + v[1]) / v[0], a * (rocker - crank).sin() / (b * sine), 1e-12);
     }
 }
 
@@ -59,7 +59,7 @@ fn four_bar_start_state() -> (SVector<f64, 3>, SVector<f64, 3>) {
 fn four_bar_integration_has_order_four() -> Result<(), Error> {
     let (q, v) = four_bar_start_state();
     let exact = simulate(&L).from(q, v).method(precise_integrator()).duration(1.0).finish()?;
-    assert_close(total_energy(&exact.q, &exact.v), total_energy(&q, &v), 1e-10);
+    assert_number_close(total_energy(&exact.q, &exact.v), total_energy(&q, &v), 1e-10);
     let errors_with_step = |h: f64| -> Result<[f64; 2], Error> {
         let end = simulate(&L).from(q, v).method(Rk4::step(h)).duration(1.0).finish()?;
         Ok([(end.q - exact.q).norm(), total_energy(&end.q, &end.v) - total_energy(&q, &v)])

@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, assert_near, elliptic_integral, precise_integrator};
+use crate::testing::{assert_matrix_close, assert_number_close, elliptic_integral, precise_integrator};
 use linkwork::nalgebra::Vector3;
 use linkwork::prelude::*;
 use linkwork_models::FreeRigidBody;
@@ -10,8 +10,8 @@ fn free_body_satisfies_newton_and_euler() {
     let (v, w) = (Vector3::new(1.0, -2.0, 0.5), Vector3::new(0.3, 2.0, -1.1));
     let inertia = SMatrix::<f64, 3, 3>::from_diagonal(&Vector3::new(1.0, 2.0, 2.5));
     let found = B.bias_forces(&B.neutral(), &[v.x, v.y, v.z, w.x, w.y, w.z].into());
-    assert_near(found.fixed_rows::<3>(0).into_owned(), 0.4 * w.cross(&v), 1e-15);
-    assert_near(found.fixed_rows::<3>(3).into_owned(), w.cross(&(inertia * w)), 1e-14);
+    assert_matrix_close(found.fixed_rows::<3>(0).into_owned(), 0.4 * w.cross(&v), 1e-15);
+    assert_matrix_close(found.fixed_rows::<3>(3).into_owned(), w.cross(&(inertia * w)), 1e-14);
 }
 
 /// Checks the flip of a rigid body that spins about its intermediate axis with a slight wobble. After half a
@@ -35,9 +35,9 @@ fn intermediate_axis_rotation_flips() -> Result<(), Error> {
     for (k, sample) in run.sample_every(period / 2.0).enumerate() {
         let Sample { q, v, .. } = sample?;
         let sign = if k == 1 { -1.0 } else { 1.0 };
-        assert_near(v.fixed_rows::<3>(3).into_owned(), Vector3::new(0.0, sign * 5.0, 0.01), 1e-7);
-        assert_near(B.momentum(&q, &v), angular, 1e-9);
-        assert_close(B.kinetic_energy(&q, &v), twice / 2.0, 1e-10);
+        assert_matrix_close(v.fixed_rows::<3>(3).into_owned(), Vector3::new(0.0, sign * 5.0, 0.01), 1e-7);
+        assert_matrix_close(B.momentum(&q, &v), angular, 1e-9);
+        assert_number_close(B.kinetic_energy(&q, &v), twice / 2.0, 1e-10);
     }
     Ok(())
 }

@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, assert_near, precise_integrator};
+use crate::testing::{assert_matrix_close, assert_number_close, precise_integrator};
 use linkwork::prelude::*;
 use linkwork_models::FurutaPendulum;
 use std::f64::consts::TAU;
@@ -18,11 +18,11 @@ fn furuta_mass_matrix_and_bias_forces_match_closed_form() {
     let FurutaPendulum { g, arm_length: r, mass: m, length: l, .. } = P;
     let (theta, dphi, dtheta) = (0.8_f64, 2.1, -1.4);
     let (q, v) = (SVector::from([0.5, theta]), SVector::from([dphi, dtheta]));
-    assert_near(P.mass_matrix(&q), closed_form_mass_matrix(theta), 1e-15);
+    assert_matrix_close(P.mass_matrix(&q), closed_form_mass_matrix(theta), 1e-15);
     let (s, c) = theta.sin_cos();
     let h1 = m * l * l * s * c * dtheta * dphi / 1.5 - m * r * l * s * dtheta * dtheta / 2.0;
     let h2 = -m * l * l * s * c * dphi * dphi / 3.0 + m * g * l * s / 2.0;
-    assert_near(P.bias_forces(&q, &v), SVector::from([h1, h2]), 1e-14);
+    assert_matrix_close(P.bias_forces(&q, &v), SVector::from([h1, h2]), 1e-14);
 }
 
 #[test]
@@ -34,6 +34,6 @@ fn furuta_pendulum_has_small_swing_frequency_with_free_arm() -> Result<(), Error
         .method(precise_integrator())
         .until_crossing(Crossing::Falling, |_, _, v| v[1])
         .finish()?;
-    assert_close(end.t, TAU / frequency, 1e-6);
+    assert_number_close(end.t, TAU / frequency, 1e-6);
     Ok(())
 }

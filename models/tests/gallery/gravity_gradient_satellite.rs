@@ -1,4 +1,4 @@
-use crate::testing::{assert_near, precise_integrator};
+use crate::testing::{assert_matrix_close, precise_integrator};
 use linkwork::nalgebra::{UnitQuaternion, Vector3};
 use linkwork::prelude::*;
 use linkwork_models::GravityGradientSatellite;
@@ -8,23 +8,23 @@ use std::f64::consts::TAU;
 const S: GravityGradientSatellite =
     GravityGradientSatellite { mu: 3.986004418e14, mass: 50.0, ixx: 5.0, iyy: 90.0, izz: 92.0 };
 
-fn configuration_from_attitude(r: Vector3<f64>, turn: UnitQuaternion<f64>) -> SVector<f64, 7> {
+fn configuration_from_position_and_attitude(r: Vector3<f64>, turn: UnitQuaternion<f64>) -> SVector<f64, 7> {
     SVector::from([r.x, r.y, r.z, turn.i, turn.j, turn.k, turn.w])
 }
 
 #[test]
 fn gravity_gradient_force_and_torque_match_theory() {
     let (r, turn) = (Vector3::new(4.1e6, -5.2e6, 1.7e6), UnitQuaternion::from_euler_angles(0.4, -0.8, 1.9));
-    let h = S.bias_forces(&configuration_from_attitude(r, turn), &SVector::zeros());
+    let h = S.bias_forces(&configuration_from_position_and_attitude(r, turn), &SVector::zeros());
     let own = turn.inverse() * r;
     let (distance, n) = (own.norm(), own.normalize());
     let weight = S.mu * S.mass / distance.powi(2) * n;
-    assert_near(h.fixed_rows::<3>(0).into_owned() / weight.norm(), weight.normalize(), 1e-12);
+    assert_matrix_close(h.fixed_rows::<3>(0).into_owned() / weight.norm(), weight.normalize(), 1e-12);
     let inertia = Vector3::new(S.ixx, S.iyy, S.izz);
     let scale = 3.0 * S.mu / distance.powi(3);
     let torque = n.cross(&inertia.component_mul(&n));
     // The torque is a small difference of large terms, which costs only the last digits.
-    assert_near(h.fixed_rows::<3>(3).into_owned() / scale, -torque, 1e-9);
+    assert_matrix_close(h.fixed_rows::<3>(3).into_owned() / scale, -torque, 1e-9);
 }
 
 #[test]
@@ -68,7 +68,7 @@ fn check_pitch(
         (q[0] * x.y - q[1] * x.x) / q[0].hypot(q[1])
     };
     let run = simulate(&unit)
-        .from(configuration_from_attitude(Vector3::x(), start), [v.x, v.y, v.z, 0.0, 0.0, 1.0])
+        .from(configuration_from_position_and_attitude(Vector3::x(), start), [v.x, v.y, v.z, 0.0, 0.0, 1.0])
         .method(precise_integrator())
         .duration(duration);
     for sample in run.sample_every(duration / 8.0) {

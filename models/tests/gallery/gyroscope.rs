@@ -1,4 +1,4 @@
-use crate::testing::assert_near;
+use crate::testing::assert_matrix_close;
 use linkwork::prelude::*;
 use linkwork_models::Gyroscope;
 
@@ -11,7 +11,7 @@ fn gyroscope_precesses_steadily() {
     let total = (across * rate * rate * theta.cos() + G.mass * G.g * G.offset) / (G.axial * rate);
     let q = SVector::from([0.3, theta, 1.0]);
     let v = SVector::from([rate, 0.0, total - rate * theta.cos()]);
-    assert_near(G.forward_dynamics(&q, &v, &SVector::zeros()), SVector::zeros(), 1e-11);
+    assert_matrix_close(G.forward_dynamics(&q, &v, &SVector::zeros()), SVector::zeros(), 1e-11);
 }
 
 #[test]
@@ -31,7 +31,7 @@ fn gyroscope_has_textbook_mass_matrix() {
         0.0,
         G.axial,
     );
-    assert_near(m, expected, 1e-16);
+    assert_matrix_close(m, expected, 1e-16);
 }
 
 #[test]
@@ -39,5 +39,5 @@ fn gyroscope_velocity_follows_euler_angle_rates() {
     let (theta, [precession, nutation, spin]) = (0.7_f64, [1.3, -0.4, 20.0]);
     let found = G.rotor_rate(&[0.2, theta, 2.0].into(), &[precession, nutation, spin].into());
     let expected = [nutation, precession * theta.sin(), spin + precession * theta.cos()];
-    assert_near(found, SVector::from(expected), 1e-14);
+    assert_matrix_close(found, SVector::from(expected), 1e-14);
 }

@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, assert_near};
+use crate::testing::{assert_matrix_close, assert_number_close};
 use linkwork::nalgebra::{UnitQuaternion, Vector3};
 use linkwork::prelude::*;
 use linkwork_models::HeavyTop;
@@ -21,8 +21,8 @@ fn heavy_top_satisfies_eulers_equations() {
     let weight = turn.inverse() * Vector3::new(0.0, 0.0, -TOP.mass * TOP.g);
     let torque = Vector3::new(0.0, 0.0, TOP.height).cross(&weight);
     let q = SVector::from([turn.i, turn.j, turn.k, turn.w]);
-    assert_near(TOP.mass_matrix(&q), inertia, 1e-16);
-    assert_near(TOP.bias_forces(&q, &omega), omega.cross(&(inertia * omega)) - torque, 1e-14);
+    assert_matrix_close(TOP.mass_matrix(&q), inertia, 1e-16);
+    assert_matrix_close(TOP.bias_forces(&q, &omega), omega.cross(&(inertia * omega)) - torque, 1e-14);
 }
 
 /// Checks that slow and fast steady precession exist for the same spin: the inclination of the axis is
@@ -44,9 +44,9 @@ fn heavy_top_precesses_steadily_at_two_rates() -> Result<(), Error> {
             .finish()?;
         let axis = UnitQuaternion::from_quaternion(end.q.into()) * Vector3::z();
         // The axis starts towards −y and precesses by one radian.
-        assert_close(axis.z, theta.cos(), 1e-8);
-        assert_close(axis.x, theta.sin() * 1.0_f64.sin(), 1e-8);
-        assert_close(axis.y, -theta.sin() * 1.0_f64.cos(), 1e-8);
+        assert_number_close(axis.z, theta.cos(), 1e-8);
+        assert_number_close(axis.x, theta.sin() * 1.0_f64.sin(), 1e-8);
+        assert_number_close(axis.y, -theta.sin() * 1.0_f64.cos(), 1e-8);
     }
     Ok(())
 }

@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, assert_near};
+use crate::testing::{assert_matrix_close, assert_number_close};
 use linkwork::prelude::*;
 use linkwork_models::SimpleHumanoid;
 
@@ -12,9 +12,9 @@ fn humanoid_falls_freely() {
     let mut expected = SVector::zeros();
     expected[2] = -9.81;
     let a = robot.forward_dynamics(&q, &SVector::zeros(), &SVector::zeros());
-    assert_near(a, expected, 1e-10);
+    assert_matrix_close(a, expected, 1e-10);
     let trunk = 27.0 + 6.0 + 30.0 + 13.0;
     let arm = 3.0 + 0.6 + 1.0 + 0.6 + 0.4 + 0.4 + 0.4;
     let leg = 2.5 + 2.0 + 5.1 + 7.0 + 2.5 + 1.9;
-    assert_close(robot.total_mass(), trunk + 2.0 * (arm + leg), 1e-14);
+    assert_number_close(robot.total_mass(), trunk + 2.0 * (arm + leg), 1e-14);
 }

@@ -1,4 +1,4 @@
-use crate::testing::{assert_near, precise_integrator};
+use crate::testing::{assert_matrix_close, precise_integrator};
 use linkwork::prelude::*;
 use linkwork_models::JeffcottRotor;
 
@@ -8,11 +8,11 @@ const R: JeffcottRotor =
 #[test]
 fn jeffcott_rotor_has_closed_form_equations() {
     let (t, q, v) = (0.4, SVector::from([0.002, -0.001]), SVector::from([0.1, 0.3]));
-    assert_near(R.mass_matrix(t, &q), SMatrix::<f64, 2, 2>::identity() * 2.0, 1e-15);
+    assert_matrix_close(R.mass_matrix(t, &q), SMatrix::<f64, 2, 2>::identity() * 2.0, 1e-15);
     let turned = R.spin * t;
     let pull = R.mass * R.eccentricity * R.spin * R.spin;
     let bias = 20.0 * v + 8000.0 * q - pull * SVector::from([turned.cos(), turned.sin()]);
-    assert_near(R.bias_forces(t, &q, &v), bias, 1e-13);
+    assert_matrix_close(R.bias_forces(t, &q, &v), bias, 1e-13);
 }
 
 #[test]
@@ -32,7 +32,7 @@ fn jeffcott_rotor_has_closed_form_whirl() -> Result<(), Error> {
         let run = simulate(&rotor).from(whirl_position(0.0), rate).method(precise_integrator());
         for sample in run.duration(0.3).sample_every(0.05) {
             let Sample { t, q, .. } = sample?;
-            assert_near(q / radius, whirl_position(t) / radius, 1e-7);
+            assert_matrix_close(q / radius, whirl_position(t) / radius, 1e-7);
             // Far above the critical speed the centre of mass is nearly at rest.
             let unbalance = R.eccentricity * SVector::from([(spin * t).cos(), (spin * t).sin()]);
             let moves = (q + unbalance).norm() > 0.01 * R.eccentricity;

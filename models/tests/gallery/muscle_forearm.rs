@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, assert_derivatives, precise_integrator};
+use crate::testing::{assert_acceleration_derivatives, assert_number_close, precise_integrator};
 use linkwork::at;
 use linkwork::prelude::*;
 use linkwork_models::MuscleForearm;
@@ -27,13 +27,13 @@ const LEVEL: (f64, f64, f64) = (0.0, 0.304_138_126_514_910_95, 0.986_393_923_832
 fn muscle_state_rates(muscle: &MuscleForearm, excitation: f64) -> SVector<f64, 3> {
     let whole = muscle.extended();
     let (q, v) = ([LEVEL.0].into(), [0.0, muscle.activation, muscle.fibre].into());
-    assert_derivatives(&whole, &q, &v, &[excitation].into(), 1e-6);
+    assert_acceleration_derivatives(&whole, &q, &v, &[excitation].into(), 1e-6);
     at(&whole, 0.0).linear_motion(&q, &v, &[excitation].into()).acceleration
 }
 
 /// Returns the fibre length at which the tendon has the force `tendon`, both divided by their reference
 /// values.
-fn fibre_length(tendon: f64) -> f64 {
+fn fibre_length_at_tendon_force(tendon: f64) -> f64 {
     (LEVEL.1 - 0.18 * (1.0 + (tendon / 600.0).sqrt())) / 0.11
 }
 
@@ -43,7 +43,7 @@ fn muscle_force_follows_hill_hyperbolas() {
         // The activation determines the ratio of the forces.
         let tendon: f64 = if ratio == 0.0 { 0.0 } else { 0.35 };
         // Without force the tendon is slack.
-        let length = fibre_length(tendon) + if ratio == 0.0 { 0.01 } else { 0.0 };
+        let length = fibre_length_at_tendon_force(tendon) + if ratio == 0.0 { 0.01 } else { 0.0 };
         let shape = (-((length - 1.0) / 0.55).powi(2)).exp();
         let passive = 2.5 * (length - 1.0).max(0.0).powi(2);
         let activation = if ratio == 0.0 { 0.5 } else { (tendon - passive) / (shape * ratio) };
@@ -55,10 +55,10 @@ fn muscle_force_follows_hill_hyperbolas() {
             10.0 * (1.0 - part) / (1.0 + (5.0 / 0.4 - 1.0) * part)
         };
         let found = muscle_state_rates(&muscle, 0.4);
-        assert_close(found[2], speed, 1e-10);
+        assert_number_close(found[2], speed, 1e-10);
         // Lever arm: 5 cm times the sine.
         let torque = 700.0 * tendon * 0.05 * LEVEL.2 - 1.5 * 9.81 * 0.15;
-        assert_close(found[0], torque / (1.5 * (0.3 * 0.3 / 12.0 + 0.15 * 0.15)), 1e-11);
+        assert_number_close(found[0], torque / (1.5 * (0.3 * 0.3 / 12.0 + 0.15 * 0.15)), 1e-11);
     }
 }
 
@@ -71,10 +71,10 @@ fn muscle_activation_times_match_closed_form() -> Result<(), Error> {
     };
     // Time of the rise from 0.1 to 0.9 at full excitation, by separation of the variables.
     let time = 0.015 * (-1.5 * (0.9 - 0.1) - 2.0 * (0.1_f64 / 0.9).ln());
-    assert_close(final_activation(0.1, 1.0, time)?, 0.9, 1e-8);
+    assert_number_close(final_activation(0.1, 1.0, time)?, 0.9, 1e-8);
     // Time of the fall from 0.9 to 0.2 at the excitation 0.1.
     let deactivation_time_integral = |a: f64| ((0.5 + 1.5 * a) / (a - 0.1)).ln() / (0.5 + 1.5 * 0.1);
-    assert_close(
+    assert_number_close(
         final_activation(
             0.9,
             0.1,

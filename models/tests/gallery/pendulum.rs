@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, assert_near, elliptic_integral, precise_integrator};
+use crate::testing::{assert_matrix_close, assert_number_close, elliptic_integral, precise_integrator};
 use linkwork::prelude::*;
 use linkwork_models::Pendulum;
 
@@ -8,9 +8,9 @@ fn pendulum_has_textbook_equation_of_motion() {
     let (q, v, a) = (SVector::from([2.1]), SVector::from([-1.7]), SVector::from([0.4]));
     let ml2 = 1.3 * 0.7 * 0.7;
     let torque = ml2 * 0.4 + 1.3 * 9.81 * 0.7 * 2.1_f64.sin();
-    assert_near(p.inverse_dynamics(&q, &v, &a), SVector::from([torque]), 1e-14);
-    assert_close(p.kinetic_energy(&q, &v), ml2 * 1.7 * 1.7 / 2.0, 1e-14);
-    assert_close(p.potential_energy(&q), -1.3 * 9.81 * 0.7 * 2.1_f64.cos(), 1e-14);
+    assert_matrix_close(p.inverse_dynamics(&q, &v, &a), SVector::from([torque]), 1e-14);
+    assert_number_close(p.kinetic_energy(&q, &v), ml2 * 1.7 * 1.7 / 2.0, 1e-14);
+    assert_number_close(p.potential_energy(&q), -1.3 * 9.81 * 0.7 * 2.1_f64.cos(), 1e-14);
 }
 
 #[test]
@@ -27,6 +27,6 @@ fn pendulum_period_matches_elliptic_integral() {
         let period = 4.0 * (0.8_f64 / 9.81).sqrt() * elliptic_integral((start / 2.0).sin().powi(2));
         let run = simulate(&p).from([start], [0.0]).method(precise_integrator());
         let back = run.until_crossing(Crossing::Falling, |_, _, v| v[0]).finish();
-        assert_close(back.map_or(f64::NAN, |s| s.t), period, 1e-9);
+        assert_number_close(back.map_or(f64::NAN, |s| s.t), period, 1e-9);
     }
 }

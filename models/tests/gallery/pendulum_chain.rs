@@ -1,4 +1,4 @@
-use crate::testing::assert_near;
+use crate::testing::assert_matrix_close;
 use linkwork::prelude::*;
 use linkwork_models::{QuintuplePendulum, TriplePendulum};
 
@@ -26,8 +26,8 @@ fn three_link_pendulum_matches_closed_form() {
     let p = TriplePendulum { g: 9.81, m1: 1.0, l1: 0.5, m2: 0.7, l2: 0.4, m3: 1.4, l3: 0.8 };
     let (q, v) = (SVector::from([0.4, -1.2, 2.5]), SVector::from([1.0, -2.0, 0.7]));
     let (mass, bias) = closed_form_dynamics(9.81, ([1.0, 0.7, 1.4], [0.5, 0.4, 0.8]), &q, &v);
-    assert_near(p.mass_matrix(&q), mass, 1e-13);
-    assert_near(p.bias_forces(&q, &v), bias, 1e-13);
+    assert_matrix_close(p.mass_matrix(&q), mass, 1e-13);
+    assert_matrix_close(p.bias_forces(&q, &v), bias, 1e-13);
 }
 
 #[test]
@@ -38,6 +38,6 @@ fn five_link_pendulum_matches_closed_form() {
     let p = QuintuplePendulum { g: 9.81, m1, m2, m3, m4, m5, l1, l2, l3, l4, l5 };
     let (q, v) = (SVector::from([0.4, -1.2, 2.5, 0.3, -0.9]), SVector::from([1.0, -2.0, 0.7, 1.9, -3.0]));
     let (mass, bias) = closed_form_dynamics(9.81, (m, l), &q, &v);
-    assert_near(p.mass_matrix(&q), mass, 1e-13);
-    assert_near(p.bias_forces(&q, &v), bias, 1e-13);
+    assert_matrix_close(p.mass_matrix(&q), mass, 1e-13);
+    assert_matrix_close(p.bias_forces(&q, &v), bias, 1e-13);
 }

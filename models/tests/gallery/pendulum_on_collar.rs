@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, assert_near, precise_integrator};
+use crate::testing::{assert_matrix_close, assert_number_close, precise_integrator};
 use linkwork::prelude::*;
 use linkwork_models::PendulumOnCollar;
 
@@ -22,9 +22,9 @@ fn pendulum_on_collar_has_textbook_mass_and_energy() {
     (expected[(0, 2)], expected[(2, 0)]) = (m13, m13);
     expected[(1, 1)] = P.sleeve_inertia + m13 * m13 / P.mass;
     expected[(2, 2)] = ml * P.length;
-    assert_near(P.mass_matrix(&q), expected, 1e-15);
+    assert_matrix_close(P.mass_matrix(&q), expected, 1e-15);
     let energy = 1.3 * 9.81 * s + 150.0 * s * s - ml * 9.81 * theta.cos();
-    assert_close(P.potential_energy(&q), energy, 1e-14);
+    assert_number_close(P.potential_energy(&q), energy, 1e-14);
 }
 
 #[test]
@@ -33,7 +33,7 @@ fn pendulum_on_collar_rotates_steadily() {
     let theta = (P.g / (P.length * rate * rate)).acos();
     let sag = -1.3 * P.g / P.stiffness;
     let (q, v) = (SVector::from([sag, 0.4, theta]), SVector::from([0.0, rate, 0.0]));
-    assert_near(P.forward_dynamics(&q, &v, &SVector::zeros()), SVector::zeros(), 1e-12);
+    assert_matrix_close(P.forward_dynamics(&q, &v, &SVector::zeros()), SVector::zeros(), 1e-12);
 }
 
 #[test]
@@ -45,8 +45,8 @@ fn pendulum_on_collar_conserves_energy_and_momentum() -> Result<(), Error> {
     for sample in run.duration(2.0).sample_every(0.2) {
         let sample = sample?;
         let (e, l) = *start.get_or_insert((total_energy(&sample), angular_momentum(&sample)));
-        assert_close(total_energy(&sample), e, 1e-9);
-        assert_close(angular_momentum(&sample), l, 1e-9);
+        assert_number_close(total_energy(&sample), e, 1e-9);
+        assert_number_close(angular_momentum(&sample), l, 1e-9);
     }
     Ok(())
 }

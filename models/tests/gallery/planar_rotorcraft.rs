@@ -1,4 +1,4 @@
-use crate::testing::{assert_near, precise_integrator};
+use crate::testing::{assert_matrix_close, precise_integrator};
 use linkwork::prelude::*;
 use linkwork_models::PlanarRotorcraft;
 
@@ -12,7 +12,7 @@ fn planar_rotorcraft_accelerations_match_closed_form() {
     let x = -5.1 * theta.sin() / R.mass;
     let y = 5.1 * theta.cos() / R.mass - R.g;
     let turn = R.arm * 1.1 / R.inertia;
-    assert_near(R.forward_dynamics(&q, &v, &tau), SVector::from([x, y, turn]), 1e-13);
+    assert_matrix_close(R.forward_dynamics(&q, &v, &tau), SVector::from([x, y, turn]), 1e-13);
 }
 
 #[test]
@@ -20,10 +20,10 @@ fn planar_rotorcraft_hovers_or_falls() -> Result<(), Error> {
     let hover = SVector::from([R.mass * R.g / 2.0; 2]);
     let q = SVector::from([0.3, 1.0, 0.0]);
     let held = simulate(&R).from(q, [0.0; 3]).inputs(|_, _, _| hover).duration(1.0).finish()?;
-    assert_near(held.q, q, 1e-12);
+    assert_matrix_close(held.q, q, 1e-12);
     let thrown =
         simulate(&R).from(q, [2.0, 5.0, -3.0]).method(precise_integrator()).duration(0.8).finish()?;
     let expected = [0.3 + 1.6, 1.0 + 4.0 - R.g * 0.32, -2.4];
-    assert_near(thrown.q, SVector::from(expected), 1e-12);
+    assert_matrix_close(thrown.q, SVector::from(expected), 1e-12);
     Ok(())
 }

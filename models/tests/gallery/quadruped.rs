@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, assert_near};
+use crate::testing::{assert_matrix_close, assert_number_close};
 use linkwork::prelude::*;
 use linkwork_models::{AnymalB, Solo12};
 
@@ -12,9 +12,9 @@ fn quadruped_falls_freely() {
     let mut expected = SVector::<f64, 18>::zeros();
     expected[2] = -9.81;
     let a = robot.forward_dynamics(&q, &SVector::zeros(), &SVector::zeros());
-    assert_near(a, expected, 1e-11);
+    assert_matrix_close(a, expected, 1e-11);
     let links: f64 = 2.0 * 0.14853845 + 0.03070001 + 0.00693606;
-    assert_close(robot.total_mass(), 1.16115091 + 4.0 * links, 1e-14);
+    assert_number_close(robot.total_mass(), 1.16115091 + 4.0 * links, 1e-14);
 }
 
 #[test]
@@ -27,9 +27,9 @@ fn anymal_falls_freely() {
     let mut expected = SVector::<f64, 18>::zeros();
     expected[2] = -9.81;
     let a = robot.forward_dynamics(&q, &SVector::zeros(), &SVector::zeros());
-    assert_near(a, expected, 1e-11);
+    assert_matrix_close(a, expected, 1e-11);
     let leg = 1.42462064 + 1.634976467 + 0.207204302 + 0.140170767 + 0.001;
-    assert_close(robot.total_mass(), 16.793507758 + 1e-6 + 0.05 + 4.0 * leg, 1e-14);
+    assert_number_close(robot.total_mass(), 16.793507758 + 1e-6 + 0.05 + 4.0 * leg, 1e-14);
 }
 
 #[test]
@@ -42,5 +42,5 @@ fn quadruped_foot_is_at_hand_computed_position() {
     let x = 0.1946 - 0.16 * (alpha.sin() + (alpha + beta).sin());
     let z = -0.16 * (alpha.cos() + (alpha + beta).cos());
     let y = 0.0875 + 0.014 + 0.03745 + 0.008;
-    assert_near(foot, SVector::from([x, y, z]), 1e-15);
+    assert_matrix_close(foot, SVector::from([x, y, z]), 1e-15);
 }

@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, assert_near};
+use crate::testing::{assert_matrix_close, assert_number_close};
 use linkwork::prelude::*;
 use linkwork_models::RollerOnIncline;
 
@@ -15,8 +15,8 @@ fn roller_has_textbook_accelerations_and_forces() {
         assert!(body.constraint_rates(&q, &v).amax() < 1e-15);
         let (a, forces) = body.constrained_dynamics(&q, &v, &SVector::zeros());
         let down = part * g * s;
-        assert_near(a, [down * c, -down * s, -down / 0.15].into(), 1e-14);
-        assert_close(forces[0], mass * g * c, 1e-14);
-        assert_close(forces[1].abs(), (1.0 - part) * mass * g * s, 1e-14);
+        assert_matrix_close(a, [down * c, -down * s, -down / 0.15].into(), 1e-14);
+        assert_number_close(forces[0], mass * g * c, 1e-14);
+        assert_number_close(forces[1].abs(), (1.0 - part) * mass * g * s, 1e-14);
     }
 }

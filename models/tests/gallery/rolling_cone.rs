@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, assert_near, elliptic_integral, precise_integrator};
+use crate::testing::{assert_matrix_close, assert_number_close, elliptic_integral, precise_integrator};
 use linkwork::nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 use linkwork::prelude::*;
 use linkwork_models::RollingCone;
@@ -30,10 +30,10 @@ fn rolling_cone_has_one_degree_of_freedom() {
     let (q, v) = rolling_state(&C, 0.7, 3.0);
     assert!(C.constraint_residuals(&q).amax() < 1e-15);
     assert!(C.constraint_rates(&q, &v).amax() < 1e-14);
-    assert_close(C.kinetic_energy(&q, &v), 0.5 * precession_inertia(&C) * 9.0, 1e-14);
+    assert_number_close(C.kinetic_energy(&q, &v), 0.5 * precession_inertia(&C) * 9.0, 1e-14);
     let (sine, cosine) = C.half_angle.sin_cos();
     let height = 0.75 * C.height * (sine * C.slope.cos() - cosine * C.slope.sin() * 0.7_f64.cos());
-    assert_close(C.potential_energy(&q), C.mass * C.g * height, 1e-14);
+    assert_number_close(C.potential_energy(&q), C.mass * C.g * height, 1e-14);
 }
 
 /// Checks that large oscillations of the cone have the period of an elliptic integral.
@@ -45,7 +45,7 @@ fn rolling_cone_swings_about_its_apex() -> Result<(), Error> {
         let (q, v) = rolling_state(&C, theta, 0.0);
         let quarter = elliptic_integral((theta / 2.0).sin().powi(2)) / slow.sqrt();
         let end = simulate(&C).from(q, v).method(precise_integrator()).duration(4.0 * quarter).finish()?;
-        assert_near(end.q.fixed_rows::<3>(0).into_owned(), SVector::zeros(), 1e-12);
+        assert_matrix_close(end.q.fixed_rows::<3>(0).into_owned(), SVector::zeros(), 1e-12);
         // By then the cone has rotated about its axis, and back.
         assert!((end.q - q).amax() < 1e-7, "{} {}", end.q, q);
         let half = simulate(&C).from(q, v).method(precise_integrator()).duration(2.0 * quarter).finish()?;
@@ -70,9 +70,9 @@ fn cone_normal_force_satisfies_eulers_equation() {
     for rate in [0.0, 1.0, 8.0] {
         let (q, v) = rolling_state(&c, 0.4, rate);
         let (a, lambda) = c.constrained_dynamics(&q, &v, &SVector::zeros());
-        assert_close(lambda[0], c.mass * c.g, 1e-13);
+        assert_number_close(lambda[0], c.mass * c.g, 1e-13);
         let gyroscopic = rate * rate * cosine / sine * (axial * cosine * cosine + across * sine * sine);
-        assert_close(lambda[1], 0.75 * c.height * cosine * c.mass * c.g + gyroscopic, 1e-13);
+        assert_number_close(lambda[1], 0.75 * c.height * cosine * c.mass * c.g + gyroscopic, 1e-13);
         // The line of contact is at rest, so that no force does work on the cone.
         let rates = c.constraint_jacobian(&q) * a + c.constraint_bias(&q, &v);
         assert!(rates.amax() < 1e-11);

@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, assert_near, precise_integrator};
+use crate::testing::{assert_matrix_close, assert_number_close, precise_integrator};
 use linkwork::prelude::*;
 use linkwork_models::RollingDisk;
 
@@ -29,7 +29,7 @@ fn rolling_disk_accelerations_match_closed_form() {
     let heading = (rates[2] + v[3] * s * v[4]) / c;
     let roll = rates[1] - heading * s - v[3] * c * v[4];
     let found = D.forward_dynamics(&q, &v, &SVector::zeros());
-    assert_near(found.fixed_rows::<3>(3).into_owned(), [heading, rates[0], roll].into(), 1e-13);
+    assert_matrix_close(found.fixed_rows::<3>(3).into_owned(), [heading, rates[0], roll].into(), 1e-13);
 }
 
 /// Checks the stability of a rolling disk. Below the critical speed one exponent is positive; above it small
@@ -44,10 +44,10 @@ fn rolling_disk_is_stable_above_critical_speed() {
         let square = 4.0 * D.g / (5.0 * D.radius) - 2.4 * (speed / D.radius).powi(2);
         // Traces of the characteristic polynomial λ⁶ (λ² − s²).
         let squared = linear.a * linear.a;
-        assert_close(linear.a.trace(), 0.0, 1e-12);
-        assert_close(squared.trace(), 2.0 * square, 1e-12);
-        assert_close((squared * linear.a).trace(), 0.0, 1e-12);
-        assert_close((squared * squared).trace(), 2.0 * square * square, 1e-12);
+        assert_number_close(linear.a.trace(), 0.0, 1e-12);
+        assert_number_close(squared.trace(), 2.0 * square, 1e-12);
+        assert_number_close((squared * linear.a).trace(), 0.0, 1e-12);
+        assert_number_close((squared * squared).trace(), 2.0 * square * square, 1e-12);
         let growth = linear.a.complex_eigenvalues().iter().map(|e| e.re).fold(0.0, f64::max);
         assert_eq!(growth > 1e-2, speed < critical, "{growth} at {speed} m/s");
     }
@@ -62,7 +62,7 @@ fn disk_rolls_in_circles() -> Result<(), Error> {
     let (q, v) = leaning_state(lean, [0.0, spin, across]);
     let period = 2.0 * std::f64::consts::PI / turning;
     let end = simulate(&D).from(q, v).method(precise_integrator()).duration(period).finish()?;
-    assert_near(end.v, v, 1e-9);
-    assert_near(end.q.fixed_rows::<3>(0).into_owned(), q.fixed_rows::<3>(0).into_owned(), 1e-8);
+    assert_matrix_close(end.v, v, 1e-9);
+    assert_matrix_close(end.q.fixed_rows::<3>(0).into_owned(), q.fixed_rows::<3>(0).into_owned(), 1e-8);
     Ok(())
 }

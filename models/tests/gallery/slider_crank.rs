@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, assert_near};
+use crate::testing::{assert_matrix_close, assert_number_close};
 use linkwork::prelude::*;
 use linkwork_models::SliderCrank;
 
@@ -35,11 +35,11 @@ fn piston_position_matches_closed_form() {
         let theta = 0.1 + f64::from(k) * std::f64::consts::PI / 6.0;
         let (q, v) = crank_state(theta, 300.0);
         let s = theta.sin();
-        assert_close(q[2], S.r * theta.cos() + (S.l * S.l - S.r * S.r * s * s).sqrt(), 1e-15);
+        assert_number_close(q[2], S.r * theta.cos() + (S.l * S.l - S.r * S.r * s * s).sqrt(), 1e-15);
         let found = S.assemble(&[theta, -theta, 0.1].into(), &[0]).expect("the crank goes round");
-        assert_near(found, q, 1e-13);
+        assert_matrix_close(found, q, 1e-13);
         let found = S.project_velocity(&q, &[300.0, -300.0, 0.0].into()).expect("no dead centre");
-        assert_near(found / found[0], v / 300.0, 1e-13);
+        assert_matrix_close(found / found[0], v / 300.0, 1e-13);
     }
 }
 
@@ -60,13 +60,13 @@ fn slider_crank_follows_eksergians_equation() {
     let expected = (torque - sum_over_masses(|c| c[1] * c[2]) * rate * rate - lift) / inertia;
 
     let (q, v) = crank_state(theta, rate);
-    assert_close(S.kinetic_energy(&q, &v), inertia * rate * rate / 2.0, 1e-13);
+    assert_number_close(S.kinetic_energy(&q, &v), inertia * rate * rate / 2.0, 1e-13);
     let a = S.forward_dynamics(&q, &v, &S.generalized_forces(&q, &[torque].into()));
     let crank_function_acceleration = |c: &ValueWithCrankDerivatives| c[1] * expected + c[2] * rate * rate;
-    assert_near(
+    assert_matrix_close(
         a,
         [expected, crank_function_acceleration(&rod) - expected, crank_function_acceleration(&piston)].into(),
         1e-12,
     );
-    assert_close(x[0], r * theta.cos() + l / 2.0 * rod[0].cos(), 1e-15);
+    assert_number_close(x[0], r * theta.cos() + l / 2.0 * rod[0].cos(), 1e-15);
 }

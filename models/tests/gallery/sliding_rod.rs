@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, assert_near};
+use crate::testing::{assert_matrix_close, assert_number_close};
 use linkwork::prelude::*;
 use linkwork_models::SlidingRod;
 
@@ -34,9 +34,9 @@ fn sliding_rod_has_closed_form_normal_force() {
         let normal =
             (R.g - R.half * 0.6_f64.sin() * rate * rate) / acceleration_per_normal_force(&R, 0.6, slip);
         let drag = -R.friction * normal * slip / slip.hypot(1e-3);
-        assert_close(lambda[0], normal, 1e-12);
+        assert_number_close(lambda[0], normal, 1e-12);
         let turn = (c * normal - d * drag) * 3.0 / (R.mass * R.half * R.half);
-        assert_near(a, [drag / R.mass, normal / R.mass - R.g, turn].into(), 1e-12);
+        assert_matrix_close(a, [drag / R.mass, normal / R.mass - R.g, turn].into(), 1e-12);
     }
 }
 

@@ -1,4 +1,4 @@
-use crate::testing::assert_near;
+use crate::testing::assert_matrix_close;
 use linkwork::prelude::*;
 use linkwork_models::SphericalPendulum;
 
@@ -11,10 +11,10 @@ fn spherical_pendulum_has_closed_form_equations() {
     let ml2 = P.mass * P.length * P.length;
     let mgl = P.mass * P.g * P.length;
     let mass = SMatrix::<f64, 2, 2>::new(ml2 * b.cos() * b.cos(), 0.0, 0.0, ml2);
-    assert_near(P.mass_matrix(&q), mass, 1e-14);
+    assert_matrix_close(P.mass_matrix(&q), mass, 1e-14);
     let h1 = -2.0 * ml2 * b.sin() * b.cos() * da * db + mgl * a.sin() * b.cos();
     let h2 = ml2 * b.sin() * b.cos() * da * da + mgl * a.cos() * b.sin();
-    assert_near(P.bias_forces(&q, &v), SVector::from([h1, h2]), 1e-14);
+    assert_matrix_close(P.bias_forces(&q, &v), SVector::from([h1, h2]), 1e-14);
 }
 
 #[test]
@@ -30,7 +30,7 @@ fn spherical_pendulum_moves_on_a_cone() -> Result<(), Error> {
         let turned = std::f64::consts::PI / 4.0 * k as f64;
         let at = [-q[1].sin(), q[0].sin() * q[1].cos(), -q[0].cos() * q[1].cos()];
         let circle = [-alpha.sin() * turned.sin(), alpha.sin() * turned.cos(), -alpha.cos()];
-        assert_near(SVector::from(at), SVector::from(circle), 1e-9);
+        assert_matrix_close(SVector::from(at), SVector::from(circle), 1e-9);
     }
     Ok(())
 }

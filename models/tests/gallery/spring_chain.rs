@@ -1,4 +1,4 @@
-use crate::testing::assert_near;
+use crate::testing::assert_matrix_close;
 use linkwork::prelude::*;
 use linkwork_models::SpringChain;
 use std::f64::consts::PI;
@@ -17,8 +17,8 @@ fn vibration_mode(j: usize) -> (f64, f64, SVector<f64, 3>) {
 fn spring_chain_has_linear_equations_of_motion() {
     let k = SMatrix::<f64, 3, 3>::new(2.0, -1.0, 0.0, -1.0, 2.0, -1.0, 0.0, -1.0, 1.0);
     let (q, v) = (SVector::from([0.1, -0.3, 0.2]), SVector::from([1.0, 0.4, -2.0]));
-    assert_near(C.mass_matrix(&q), SMatrix::identity() * C.mass, 1e-15);
-    assert_near(C.bias_forces(&q, &v), k * (C.stiffness * q + C.damping * v), 1e-14);
+    assert_matrix_close(C.mass_matrix(&q), SMatrix::identity() * C.mass, 1e-15);
+    assert_matrix_close(C.bias_forces(&q, &v), k * (C.stiffness * q + C.damping * v), 1e-14);
 }
 
 #[test]
@@ -27,7 +27,7 @@ fn spring_chain_modes_are_decoupled() {
         let (omega, zeta, shape) = vibration_mode(j);
         let (q, v) = (0.05 * shape, 0.2 * shape);
         let a = C.forward_dynamics(&q, &v, &SVector::zeros());
-        assert_near(a, -omega * omega * q - 2.0 * zeta * omega * v, 1e-13);
+        assert_matrix_close(a, -omega * omega * q - 2.0 * zeta * omega * v, 1e-13);
     }
 }
 
@@ -40,7 +40,7 @@ fn spring_chain_modes_decay_independently() -> Result<(), Error> {
         for sample in start.duration(1.0).sample_every(0.25) {
             let Sample { t, q, .. } = sample?;
             let swing = (damped * t).cos() + zeta * omega / damped * (damped * t).sin();
-            assert_near(q, 0.05 * shape * swing * (-zeta * omega * t).exp(), 1e-8);
+            assert_matrix_close(q, 0.05 * shape * swing * (-zeta * omega * t).exp(), 1e-8);
         }
     }
     Ok(())

@@ -1,4 +1,4 @@
-use crate::testing::assert_near;
+use crate::testing::assert_matrix_close;
 use linkwork::nalgebra::{Isometry3, Matrix6, UnitQuaternion, Vector3, Vector6};
 use linkwork::prelude::*;
 use linkwork_models::StewartPlatform;
@@ -62,11 +62,11 @@ fn stewart_platform_legs_match_inverse_kinematics() {
     // Assembly from a level platform with the pose fixed.
     let mut guess = platform_configuration(&Isometry3::translation(0.0, 0.0, 0.9));
     guess.fixed_rows_mut::<7>(0).copy_from(&q.fixed_rows::<7>(0));
-    assert_near(P.assemble(&guess, &[0, 1, 2, 3, 4, 5]).expect("the legs reach"), q, 1e-13);
+    assert_matrix_close(P.assemble(&guess, &[0, 1, 2, 3, 4, 5]).expect("the legs reach"), q, 1e-13);
     // Forward kinematics: assembly with the lengths fixed.
     let lengths = [8, 11, 14, 17, 20, 23];
     let guess = P.integrate(&q, &SVector::from_fn(|k, _| if lengths.contains(&k) { 0.0 } else { 0.02 }));
-    assert_near(P.assemble(&guess, &lengths).expect("a pose is near"), q, 1e-12);
+    assert_matrix_close(P.assemble(&guess, &lengths).expect("a pose is near"), q, 1e-12);
 }
 
 /// Checks leg forces by virtual work. Rows of the matrices are derivatives of the weights' heights, and of
@@ -79,15 +79,16 @@ fn stewart_leg_forces_satisfy_virtual_work() {
     for (k, (leg, (_, head))) in legs_as_vectors(&pose).into_iter().zip(LEGS).enumerate() {
         let arm = pose.rotation * point_on_circle(P.platform_radius, head);
         let (length, n) = (leg.norm(), leg.normalize());
-        let wrench_row = |f: Vector3<f64>| {
+        let wrench_of_force_at_head = |f: Vector3<f64>| {
             let torque = arm.cross(&f);
             Vector6::new(f.x, f.y, f.z, torque.x, torque.y, torque.z)
         };
-        lengths.set_column(k, &wrench_row(n));
+        lengths.set_column(k, &wrench_of_force_at_head(n));
         // A point at a fixed distance along the leg rises with the head's motion across the leg. A point at a
         // fixed distance from the head rises with the head, minus that amount.
         let across = (Vector3::z() - n * n.z) * (P.leg / 2.0 / length);
-        weight += wrench_row(across) * P.leg_mass + wrench_row(Vector3::z() - across) * P.leg_mass;
+        weight += wrench_of_force_at_head(across) * P.leg_mass
+            + wrench_of_force_at_head(Vector3::z() - across) * P.leg_mass;
     }
     let forces = lengths.lu().solve(&(weight * P.g)).expect("not singular");
     let (q, still) = (platform_configuration(&pose), SVector::zeros());

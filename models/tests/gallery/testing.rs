@@ -9,7 +9,7 @@ use std::f64::consts::FRAC_PI_2;
 /// Checks a generated matrix against its closed form. The tolerance is relative to the largest entry, but
 /// absolute if this is below one.
 #[track_caller]
-pub fn assert_near<const R: usize, const C: usize>(
+pub fn assert_matrix_close<const R: usize, const C: usize>(
     found: SMatrix<f64, R, C>,
     expected: SMatrix<f64, R, C>,
     tolerance: f64,
@@ -21,7 +21,7 @@ pub fn assert_near<const R: usize, const C: usize>(
 /// Checks a generated number against its closed form. The tolerance is relative to the number, but absolute
 /// if this is below one.
 #[track_caller]
-pub fn assert_close(found: f64, expected: f64, tolerance: f64) {
+pub fn assert_number_close(found: f64, expected: f64, tolerance: f64) {
     let error = (found - expected).abs() / expected.abs().max(1.0);
     assert!(error <= tolerance, "error {error:e}: found {found}, expected {expected}");
 }
@@ -42,16 +42,16 @@ pub fn elliptic_integral(k2: f64) -> f64 {
 }
 
 /// Returns the pose of a rotation about z and a displacement along z: one half of a Denavit–Hartenberg step.
-pub fn pose_about_z(angle: f64, d: f64) -> Isometry3<f64> {
-    pose_about_axis(Vector3::z(), angle, d)
+pub fn pose_along_and_about_z(angle: f64, d: f64) -> Isometry3<f64> {
+    pose_along_and_about_axis(Vector3::z(), angle, d)
 }
 
 /// Returns a rotation about x and a displacement along it: the other half of a Denavit–Hartenberg step.
 pub fn pose_along_and_about_x(angle: f64, a: f64) -> Isometry3<f64> {
-    pose_about_axis(Vector3::x(), angle, a)
+    pose_along_and_about_axis(Vector3::x(), angle, a)
 }
 
-fn pose_about_axis(axis: Vector3<f64>, angle: f64, distance: f64) -> Isometry3<f64> {
+fn pose_along_and_about_axis(axis: Vector3<f64>, angle: f64, distance: f64) -> Isometry3<f64> {
     let turn = Rotation3::new(axis * angle);
     Isometry3::from_parts(Translation3::from(axis * distance), turn.into())
 }
@@ -59,7 +59,7 @@ fn pose_about_axis(axis: Vector3<f64>, angle: f64, distance: f64) -> Isometry3<f
 /// Checks the derivatives of the accelerations with respect to configuration, velocities and inputs against
 /// central differences, relative to the largest entry of each block.
 #[track_caller]
-pub fn assert_derivatives<M, const NV: usize, const NU: usize, const NQ: usize>(
+pub fn assert_acceleration_derivatives<M, const NV: usize, const NU: usize, const NQ: usize>(
     m: &M,
     q: &SVector<f64, NQ>,
     v: &SVector<f64, NV>,
@@ -99,7 +99,7 @@ pub fn assert_derivatives<M, const NV: usize, const NU: usize, const NQ: usize>(
             ),
         );
     }
-    assert_near(linear.by_q, by_q, tolerance);
-    assert_near(linear.by_v, by_v, tolerance);
-    assert_near(linear.by_u, by_u, tolerance);
+    assert_matrix_close(linear.by_q, by_q, tolerance);
+    assert_matrix_close(linear.by_v, by_v, tolerance);
+    assert_matrix_close(linear.by_u, by_u, tolerance);
 }

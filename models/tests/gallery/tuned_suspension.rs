@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, assert_near, precise_integrator};
+use crate::testing::{assert_matrix_close, assert_number_close, precise_integrator};
 use linkwork::prelude::*;
 use linkwork_models::TunedSuspension;
 
@@ -8,12 +8,12 @@ const S: TunedSuspension =
 #[test]
 fn tuned_suspension_accelerations_have_closed_form() {
     let symmetric_matrix = |a, b, c| SMatrix::<f64, 2, 2>::new(a, b, b, c);
-    assert_near(S.mass_matrix(&SVector::zeros()), symmetric_matrix(10.5, -0.5, 1.3), 1e-14);
+    assert_matrix_close(S.mass_matrix(&SVector::zeros()), symmetric_matrix(10.5, -0.5, 1.3), 1e-14);
     let (q, v) = (SVector::from([0.02, -0.05]), SVector::from([0.7, 0.3]));
     let bias = symmetric_matrix(1020.0, -120.0, 120.0) * q + symmetric_matrix(3.0, -3.0, 3.0) * v;
-    assert_near(S.bias_forces(&q, &v), bias, 1e-13);
+    assert_matrix_close(S.bias_forces(&q, &v), bias, 1e-13);
     let energy = 450.0 * q[0] * q[0] + 60.0 * (q[0] - q[1]).powi(2);
-    assert_close(S.potential_energy(&q), energy, 1e-14);
+    assert_number_close(S.potential_energy(&q), energy, 1e-14);
 }
 
 #[test]
@@ -27,7 +27,7 @@ fn tuned_absorber_stops_the_shaken_cart() -> Result<(), Error> {
         .method(precise_integrator());
     for sample in run.duration(3.0).sample_every(0.3) {
         let Sample { t, q, .. } = sample?;
-        assert_near(q, SVector::from([0.0, swing * (omega * t).cos()]), 1e-9);
+        assert_matrix_close(q, SVector::from([0.0, swing * (omega * t).cos()]), 1e-9);
     }
     Ok(())
 }

@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, assert_near, precise_integrator};
+use crate::testing::{assert_matrix_close, assert_number_close, precise_integrator};
 use linkwork::prelude::*;
 use linkwork_models::TwoBodies;
 use std::f64::consts::TAU;
@@ -15,9 +15,9 @@ fn two_bodies_obey_newtons_law() {
     let r = relative_position(&q);
     let pull = 0.5 * 3.0 / r.norm().powi(3) * r;
     let h = P.bias_forces(&q, &SVector::zeros());
-    assert_near(h.fixed_rows::<3>(0).into_owned(), -pull, 1e-14);
-    assert_near(h.fixed_rows::<3>(3).into_owned(), pull, 1e-14);
-    assert_close(P.potential_energy(&q), -1.5 / r.norm(), 1e-14);
+    assert_matrix_close(h.fixed_rows::<3>(0).into_owned(), -pull, 1e-14);
+    assert_matrix_close(h.fixed_rows::<3>(3).into_owned(), pull, 1e-14);
+    assert_number_close(P.potential_energy(&q), -1.5 / r.norm(), 1e-14);
 }
 
 /// Checks that two gravitating bodies that start at the pericentre move relative to each other on an ellipse
@@ -36,12 +36,12 @@ fn two_bodies_move_on_ellipses() -> Result<(), Error> {
         let Sample { t, q, v, .. } = sample?;
         let (r, dr) = (relative_position(&q), relative_position(&v));
         let laplace = dr.cross(&r.cross(&dr)) / mu - r.normalize();
-        assert_near(laplace, SVector::from([e, 0.0, 0.0]), 1e-9);
-        assert_close(P.center_of_mass(&q)[2], drift * t, 1e-10);
+        assert_matrix_close(laplace, SVector::from([e, 0.0, 0.0]), 1e-9);
+        assert_number_close(P.center_of_mass(&q)[2], drift * t, 1e-10);
         // Half of the period to the apocentre, a whole period back to the pericentre.
         match k {
-            2 => assert_near(r, SVector::from([-a * (1.0 + e), 0.0, 0.0]), 1e-8),
-            4 => assert_near(r, SVector::from([near, 0.0, 0.0]), 1e-8),
+            2 => assert_matrix_close(r, SVector::from([-a * (1.0 + e), 0.0, 0.0]), 1e-8),
+            4 => assert_matrix_close(r, SVector::from([near, 0.0, 0.0]), 1e-8),
             _ => {}
         }
     }

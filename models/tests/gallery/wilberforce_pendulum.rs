@@ -1,4 +1,4 @@
-use crate::testing::{assert_near, precise_integrator};
+use crate::testing::{assert_matrix_close, precise_integrator};
 use linkwork::prelude::*;
 use linkwork_models::WilberforcePendulum;
 
@@ -15,9 +15,9 @@ const P: WilberforcePendulum = WilberforcePendulum {
 fn wilberforce_accelerations_have_closed_form() {
     let q = SVector::from([0.04, -1.3]);
     let bias = [2.63 * q[0] + 4.635e-3 * q[1], 7.44e-4 * q[1] + 4.635e-3 * q[0]];
-    assert_near(P.bias_forces(&q, &SVector::from([0.1, 2.0])), SVector::from(bias), 1e-15);
+    assert_matrix_close(P.bias_forces(&q, &SVector::from([0.1, 2.0])), SVector::from(bias), 1e-15);
     let mass = SMatrix::<f64, 2, 2>::new(P.mass, 0.0, 0.0, P.inertia);
-    assert_near(P.mass_matrix(&q), mass, 1e-16);
+    assert_matrix_close(P.mass_matrix(&q), mass, 1e-16);
 }
 
 #[test]
@@ -35,7 +35,7 @@ fn wilberforce_energy_alternates() -> Result<(), Error> {
     {
         let Sample { t, q, .. } = sample?;
         let (a, b) = ((first * t).cos(), (second * t).cos());
-        assert_near(q, SVector::from([0.05 * (a + b), 0.05 * lever * (a - b)]), 1e-8);
+        assert_matrix_close(q, SVector::from([0.05 * (a + b), 0.05 * lever * (a - b)]), 1e-8);
     }
     Ok(())
 }

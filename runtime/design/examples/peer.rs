@@ -70,13 +70,15 @@ fn main() -> Result<(), Box<dyn Failure>> {
     let mut numbers = text.split_whitespace().map(str::parse::<f64>);
     let mut times = BTreeMap::new();
     while let Some(n) = numbers.next() {
-        let mut take = || numbers.next().unwrap_or(Ok(0.0));
-        let (n, m, p) = (n? as usize, take()? as usize, take()? as usize);
-        let mut matrix = |rows: usize, columns: usize| -> Result<DMatrix<f64>, Box<dyn Failure>> {
-            let entries = (0..rows * columns).map(|_| take()).collect::<Result<Vec<_>, _>>()?;
+        let mut next_number_or_zero = || numbers.next().unwrap_or(Ok(0.0));
+        let (n, m, p) = (n? as usize, next_number_or_zero()? as usize, next_number_or_zero()? as usize);
+        let mut next_matrix = |rows: usize, columns: usize| -> Result<DMatrix<f64>, Box<dyn Failure>> {
+            let entries =
+                (0..rows * columns).map(|_| next_number_or_zero()).collect::<Result<Vec<_>, _>>()?;
             Ok(DMatrix::from_row_slice(rows, columns, &entries))
         };
-        let system = StateSpace::new(matrix(n, n)?, matrix(n, m)?, matrix(p, n)?, matrix(p, m)?)?;
+        let system =
+            StateSpace::new(next_matrix(n, n)?, next_matrix(n, m)?, next_matrix(p, n)?, next_matrix(p, m)?)?;
         for name in
             ["poles", "zeros", "lyap", "care", "dare", "gram", "h2", "hinf", "zoh", "response", "margins"]
         {

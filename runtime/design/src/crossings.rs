@@ -47,7 +47,7 @@ impl StateSpace {
 
     /// Returns candidates that include all frequencies at which a singular value of the response equals
     /// `level`, in ascending order.
-    pub(crate) fn level_frequencies(&self, level: f64) -> Result<Vec<f64>, Error> {
+    pub(crate) fn frequencies_at_gain_level(&self, level: f64) -> Result<Vec<f64>, Error> {
         let (a, b, c, _) = balance_system(&self.a, &self.b, &self.c);
         let ((n, m), p) = (b.shape(), c.nrows());
         // y = G u = γ w and Gᵀ(−s) w = γ u, or Gᵀ(1 / z) w = γ u, in the unknowns x, q, u, w.

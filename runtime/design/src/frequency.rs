@@ -1,6 +1,6 @@
 //! Frequency response: data of Bode and Nyquist diagrams.
 
-use crate::matrices::{C, CMatrix, balance_system, complex_matrix};
+use crate::matrices::{C, CMatrix, balance_system, to_complex_matrix};
 use crate::{Error, StateSpace};
 use nalgebra::{DMatrix, Hessenberg};
 
@@ -27,9 +27,9 @@ impl FrequencyMap {
         if let Some(value) = [s.re, s.im].into_iter().find(|part| !part.is_finite()) {
             return Err(Error::Range { what: "a frequency", value });
         }
-        let mut x = complex_matrix(&self.b);
+        let mut x = to_complex_matrix(&self.b);
         self.factorise_at_frequency(s)?.solve_in_place(&mut x);
-        Ok(complex_matrix(&self.c) * x + complex_matrix(&self.d))
+        Ok(to_complex_matrix(&self.c) * x + to_complex_matrix(&self.d))
     }
 
     /// Factorises `s I − A` into row operations and a triangular matrix, by Gaussian elimination of a
@@ -68,10 +68,10 @@ impl FrequencyMap {
     /// [`Error::Singular`] at a pole.
     pub(crate) fn sample_channel(&self, s: C) -> Result<ResponseSample, Error> {
         let factors = self.factorise_at_frequency(s)?;
-        let (mut x, mut y) = (complex_matrix(&self.b), complex_matrix(&self.c));
+        let (mut x, mut y) = (to_complex_matrix(&self.b), to_complex_matrix(&self.c));
         factors.solve_in_place(&mut x);
         factors.solve_row_vector_system(&mut y);
-        let value = (complex_matrix(&self.c) * &x)[(0, 0)] + self.d[(0, 0)];
+        let value = (to_complex_matrix(&self.c) * &x)[(0, 0)] + self.d[(0, 0)];
         // The entries of the matrices have rounding errors; this sums the effect of each on the value. The
         // transformation to Hessenberg form has errors in proportion to the norm.
         let through = if self.is_transformed {

@@ -213,7 +213,7 @@ impl StateSpace {
     /// is real or has magnitude one.
     fn margin_separating_frequencies(&self) -> Result<Vec<f64>, Error> {
         let mut points = self.pole_and_zero_frequencies()?;
-        points.extend(self.level_frequencies(1.0)?);
+        points.extend(self.frequencies_at_gain_level(1.0)?);
         points.extend(self.real_response_frequencies()?);
         points.extend(self.crossing_frequencies_of_factors());
         points.sort_by(f64::total_cmp);

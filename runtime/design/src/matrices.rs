@@ -50,7 +50,7 @@ pub(crate) fn checked_square_size(matrix: &'static str, m: &DMatrix<f64>) -> Res
 }
 
 /// Converts a real matrix to a complex one.
-pub(crate) fn complex_matrix(m: &DMatrix<f64>) -> CMatrix {
+pub(crate) fn to_complex_matrix(m: &DMatrix<f64>) -> CMatrix {
     m.map(|x| C::new(x, 0.0))
 }
 

@@ -3,7 +3,7 @@
 
 use crate::Error;
 use crate::margins::root_between;
-use crate::matrices::{C, CMatrix, Schur, balance_matrix, complex_matrix};
+use crate::matrices::{C, CMatrix, Schur, balance_matrix, to_complex_matrix};
 use nalgebra::DMatrix;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -185,7 +185,7 @@ impl ModalSum {
     /// [`Error::NotConverged`] if modes cannot be separated.
     pub fn new(c: &DMatrix<f64>, a: &DMatrix<f64>, x: &DMatrix<f64>, sampled: bool) -> Result<Self, Error> {
         let (a, d) = balance_matrix(a);
-        let mut rest = Schur::new(&complex_matrix(&a))?;
+        let mut rest = Schur::new(&to_complex_matrix(&a))?;
         let mut c = CMatrix::from_fn(1, d.len(), |_, j| C::new(c[(0, j)] * d[j], 0.0));
         let mut x = CMatrix::from_fn(d.len(), 1, |i, _| C::new(x[(i, 0)] / d[i], 0.0));
         let mut terms = Vec::new();
@@ -354,7 +354,7 @@ impl ModalSum {
                 let [left, right] = self.split_bounded_interval(&interval);
                 open.extend([right, left]);
             }
-            count_interval_within_limit(&mut count)?;
+            count_interval_or_error(&mut count)?;
         }
         Ok(self.end.max(from))
     }
@@ -384,7 +384,7 @@ impl ModalSum {
             } else {
                 open.extend(self.split_bounded_interval(&interval));
             }
-            count_interval_within_limit(&mut count)?;
+            count_interval_or_error(&mut count)?;
         }
         Ok((self.value(from).abs() > band).then_some(from))
     }
@@ -423,13 +423,13 @@ impl ModalSum {
                     open.push(IntervalRankedByBound(bound_of_interval(&half), half));
                 }
             }
-            count_interval_within_limit(&mut count)?;
+            count_interval_or_error(&mut count)?;
         }
         Ok((best.0, sign * best.1))
     }
 }
 
-fn count_interval_within_limit(count: &mut usize) -> Result<(), Error> {
+fn count_interval_or_error(count: &mut usize) -> Result<(), Error> {
     *count += 1;
     if *count > MAX_INTERVALS { Err(Error::NotConverged { what: "the search over time" }) } else { Ok(()) }
 }

@@ -1,6 +1,6 @@
 //! Modes of linear systems: eigenvalues, mode shapes, participation factors and damping.
 
-use crate::matrices::{C, CMatrix, Schur, balance_matrix, complex_matrix};
+use crate::matrices::{C, CMatrix, Schur, balance_matrix, to_complex_matrix};
 use crate::{Error, Signal, StateSpace};
 use std::f64::consts::{LN_2, TAU};
 use std::fmt;
@@ -167,7 +167,7 @@ impl StateSpace {
     /// [`Error::NotConverged`] if the QR algorithm does not converge.
     pub fn modes(&self) -> Result<Vec<Mode>, Error> {
         let (a, d) = balance_matrix(&self.a);
-        let schur = Schur::new(&complex_matrix(&a))?;
+        let schur = Schur::new(&to_complex_matrix(&a))?;
         let n = self.order();
         let mut taken = vec![false; n];
         let mut modes = Vec::new();

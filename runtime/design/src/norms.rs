@@ -1,7 +1,7 @@
 //! H₂ and H∞ norms of linear systems.
 
 use crate::frequency::{FrequencyMap, stability_boundary_point};
-use crate::matrices::complex_matrix;
+use crate::matrices::to_complex_matrix;
 use crate::{Error, StateSpace};
 
 /// Peak gain: maximum gain of a system over all frequencies.
@@ -49,7 +49,7 @@ impl StateSpace {
     pub(crate) fn extreme_gain(&self, extreme: GainExtremum) -> Result<PeakGain, Error> {
         let map = self.frequency_map()?;
         let gain_at_frequency = |w: f64| {
-            let response = if w.is_finite() { map.response(w) } else { Ok(complex_matrix(&self.d)) };
+            let response = if w.is_finite() { map.response(w) } else { Ok(to_complex_matrix(&self.d)) };
             match response {
                 Ok(m) if m.is_empty() => 0.0,
                 // At a pole that a zero cancels, the value is rounding error and must not count as the
@@ -67,7 +67,7 @@ impl StateSpace {
         };
         let top = self.upper_frequency_limit();
         let mut best = PeakGain { gain: gain_at_frequency(top), frequency: top };
-        let mut improve = |frequencies: &mut dyn Iterator<Item = f64>| {
+        let mut improve_extreme_gain = |frequencies: &mut dyn Iterator<Item = f64>| {
             let before = best.gain;
             for w in frequencies {
                 let gain = gain_at_frequency(w);
@@ -78,7 +78,8 @@ impl StateSpace {
             }
             (before, best)
         };
-        let (_, mut found) = improve(&mut self.pole_and_zero_frequencies()?.into_iter().chain([0.0]));
+        let (_, mut found) =
+            improve_extreme_gain(&mut self.pole_and_zero_frequencies()?.into_iter().chain([0.0]));
         // Levels near the gain of high frequencies are also crossed at very high frequencies; hence coarse
         // steps first.
         for step in [1e-3, 1e-6, 1e-9, 1e-12] {
@@ -87,7 +88,7 @@ impl StateSpace {
                 if !(level > 0.0 && level.is_finite()) {
                     return Ok(found);
                 }
-                let crossings = self.level_frequencies(level)?;
+                let crossings = self.frequencies_at_gain_level(level)?;
                 let between = crossings.windows(2).flat_map(|pair| {
                     let (low, high) = (pair[0], pair[1]);
                     [(low * high).sqrt(), 0.5 * (low + high)]
@@ -95,7 +96,8 @@ impl StateSpace {
                 // The first interval begins at zero frequency, the last one is unbounded.
                 let ends = [crossings.first().map(|w| 0.1 * w), crossings.last().map(|w| 10.0 * w)];
                 let ends = ends.into_iter().flatten().filter(|w| *w < top);
-                let (before, now) = improve(&mut between.chain(ends).chain(crossings.iter().copied()));
+                let (before, now) =
+                    improve_extreme_gain(&mut between.chain(ends).chain(crossings.iter().copied()));
                 found = now;
                 if !extreme.is_more_extreme(now.gain, extreme.level_beyond_gain(before, step)) {
                     break;

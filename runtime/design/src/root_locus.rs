@@ -94,9 +94,12 @@ impl StateSpace {
         gains.extend(crate::logarithmic(low, high, 80)?);
         for _ in 0..6 {
             let locus = self.root_locus(&gains)?;
-            let is_coarse = |k: usize| locus.branches.iter().any(|b| (b[k] - b[k - 1]).norm() > 0.025 * size);
-            let more: Vec<f64> =
-                (1..gains.len()).filter(|k| is_coarse(*k)).map(|k| 0.5 * (gains[k - 1] + gains[k])).collect();
+            let is_coarse_interval =
+                |k: usize| locus.branches.iter().any(|b| (b[k] - b[k - 1]).norm() > 0.025 * size);
+            let more: Vec<f64> = (1..gains.len())
+                .filter(|k| is_coarse_interval(*k))
+                .map(|k| 0.5 * (gains[k - 1] + gains[k]))
+                .collect();
             if more.is_empty() || gains.len() > 1500 {
                 break;
             }

@@ -145,7 +145,7 @@ impl StateSpace {
     ///
     /// [`Error::Count`] if the number of names differs from the number of states.
     pub fn with_states<S: Into<Signal>>(mut self, names: impl IntoIterator<Item = S>) -> Result<Self, Error> {
-        self.states = check_names("states", self.a.nrows(), names)?;
+        self.states = signals_of_expected_count("states", self.a.nrows(), names)?;
         Ok(self)
     }
 
@@ -155,7 +155,7 @@ impl StateSpace {
     ///
     /// [`Error::Count`] if the number of names differs from the number of inputs.
     pub fn with_inputs<S: Into<Signal>>(mut self, names: impl IntoIterator<Item = S>) -> Result<Self, Error> {
-        self.inputs = check_names("inputs", self.b.ncols(), names)?;
+        self.inputs = signals_of_expected_count("inputs", self.b.ncols(), names)?;
         Ok(self)
     }
 
@@ -168,7 +168,7 @@ impl StateSpace {
         mut self,
         names: impl IntoIterator<Item = S>,
     ) -> Result<Self, Error> {
-        self.outputs = check_names("outputs", self.c.nrows(), names)?;
+        self.outputs = signals_of_expected_count("outputs", self.c.nrows(), names)?;
         Ok(self)
     }
 
@@ -313,7 +313,7 @@ impl StateSpace {
     }
 }
 
-fn check_names<S: Into<Signal>>(
+fn signals_of_expected_count<S: Into<Signal>>(
     what: &'static str,
     expected: usize,
     names: impl IntoIterator<Item = S>,

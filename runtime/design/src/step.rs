@@ -54,7 +54,7 @@ struct StepResponseDeviation {
 
 impl StepResponseDeviation {
     /// Returns the first instant at which the modes alone describe the deviation.
-    fn start_of_modal_description(&self) -> f64 {
+    fn first_instant_described_by_modes(&self) -> f64 {
         self.first.len() as f64
     }
 
@@ -63,14 +63,14 @@ impl StepResponseDeviation {
     fn first_above(&self, level: f64) -> Result<f64, Error> {
         match self.first.iter().position(|e| *e >= level) {
             Some(k) => Ok(k as f64),
-            None => self.modes.first_above(level, self.start_of_modal_description()),
+            None => self.modes.first_above(level, self.first_instant_described_by_modes()),
         }
     }
 
     /// Returns the last instant at which the magnitude of the deviation of the step response exceeds a band.
     fn last_outside(&self, band: f64) -> Result<Option<f64>, Error> {
         let early = self.first.iter().rposition(|e| e.abs() > band).map(|k| k as f64);
-        Ok(self.modes.last_outside(band, self.start_of_modal_description())?.or(early))
+        Ok(self.modes.last_outside(band, self.first_instant_described_by_modes())?.or(early))
     }
 
     /// Returns the instant and the value of the maximum (`sign` one) or minimum (`sign` −1) of the deviation
@@ -79,7 +79,7 @@ impl StepResponseDeviation {
     fn extreme_deviation(&self, sign: f64, from: f64) -> Result<(f64, f64), Error> {
         let early = self.first.iter().enumerate().skip(from as usize).map(|(k, e)| (k as f64, *e));
         let early = early.reduce(|best, next| if sign * next.1 > sign * best.1 { next } else { best });
-        let late = self.modes.extreme(sign, from.max(self.start_of_modal_description()))?;
+        let late = self.modes.extreme(sign, from.max(self.first_instant_described_by_modes()))?;
         let best = early.filter(|early| sign * early.1 >= sign * late.1).unwrap_or(late);
         let initial = self.first.get(from as usize).copied().unwrap_or_else(|| self.modes.value(from));
         Ok(if sign * best.1 > self.modes.noise {

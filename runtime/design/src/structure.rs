@@ -197,7 +197,7 @@ impl StateSpace {
         let (scaled, _) = self.diagonally_balanced_system();
         let (n, m) = scaled.b.shape();
         let size = scaled.a.norm().max(f64::MIN_POSITIVE);
-        let distance_to_uncontrollability = |pole: C| {
+        let pole_with_uncontrollability_distance = |pole: C| {
             let test = CMatrix::from_fn(n, n + m, |i, j| {
                 if j >= n {
                     return C::new(scaled.b[(i, j - n)], 0.0);
@@ -207,7 +207,7 @@ impl StateSpace {
             });
             (pole, smallest_singular_value(&test) / size)
         };
-        Ok(self.poles()?.into_iter().map(distance_to_uncontrollability).collect())
+        Ok(self.poles()?.into_iter().map(pole_with_uncontrollability_distance).collect())
     }
 
     /// Computes for every pole its distance from unobservability, the dual of

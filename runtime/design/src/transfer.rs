@@ -299,13 +299,13 @@ impl Mul for &TransferFunction {
 }
 
 fn format_fraction(above: &str, below: &str) -> String {
-    let wrap_in_parentheses = |text: &str| {
+    let parenthesize_sum = |text: &str| {
         if text.contains(" + ") || text.contains(" - ") { format!("({text})") } else { text.to_owned() }
     };
     if below == "1" {
         above.to_owned()
     } else {
-        format!("{} / {}", wrap_in_parentheses(above), wrap_in_parentheses(below))
+        format!("{} / {}", parenthesize_sum(above), parenthesize_sum(below))
     }
 }
 

@@ -59,10 +59,10 @@ fn biproper_systems_have_closed_form_peak_gain() {
     for k in 0..1000 {
         let light = k % 4 == 3;
         let (c, f) = (random.uniform_number(0.1, 50.0), random.uniform_number(0.0, 50.0));
-        let random_damping = |random: &mut Random| {
+        let random_damping_coefficient = |random: &mut Random| {
             if light { random.log_uniform_number(1e-5, 1.0) } else { random.uniform_number(0.05, 10.0) }
         };
-        let (b, e) = (random_damping(&mut random), random_damping(&mut random));
+        let (b, e) = (random_damping_coefficient(&mut random), random_damping_coefficient(&mut random));
         let system = state_space(&[1.0, e, f], &[1.0, b, c]);
         let expected = biproper_peak(e, f, b, c);
         assert_relatively_close(
@@ -463,7 +463,7 @@ fn sampled_step_figures_match_continuous_oscillator() {
     assert_eq!(at_rest.discretize(0.1, Hold::Zero).unwrap().step_figures(), error);
 }
 
-fn stable_gains(one: &[f64], other: &[f64]) -> Vec<GainRange> {
+fn stable_gain_ranges(one: &[f64], other: &[f64]) -> Vec<GainRange> {
     Polynomial::new(one.to_vec()).stable_gains(&Polynomial::new(other.to_vec())).unwrap()
 }
 
@@ -490,7 +490,7 @@ fn stable_gains_satisfy_hurwitz_criterion() {
         (&[1e-9, 1e-9, 0.0], &[1.0], &[(0.0, most)]),
     ];
     for (one, other, expected) in cases {
-        let found = stable_gains(one, other);
+        let found = stable_gain_ranges(one, other);
         let has_same_gain_limits = |(found, (low, high)): (&GainRange, &(f64, f64))| {
             let is_equal_or_close = |a: f64, b: f64| a == b || (a - b).abs() < 1e-10;
             is_equal_or_close(found.low, *low) && is_equal_or_close(found.high, *high)

@@ -2,7 +2,7 @@
 
 use crate::robot::Robot;
 use crate::shared::{Quantity, Shared};
-use linkwork_compiler::Source;
+use linkwork_compiler::ParsedSource;
 use linkwork_compiler::export::without_doc_links;
 use linkwork_compiler::mechanism::Model;
 
@@ -14,7 +14,7 @@ pub(crate) struct MechanismDocumentation {
 
 impl MechanismDocumentation {
     /// Collects the documentation and the outputs of a mechanism.
-    pub fn new(source: &Source, model: &Model<'_>) -> MechanismDocumentation {
+    pub fn new(source: &ParsedSource, model: &Model<'_>) -> MechanismDocumentation {
         let outputs = model.outputs.iter().enumerate().map(|(k, output)| Quantity {
             name: output.name.clone(),
             unit: model.units.outputs.get(k).cloned().unwrap_or_default(),

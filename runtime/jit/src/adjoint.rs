@@ -270,7 +270,7 @@ impl ReverseModeProgram {
     }
 
     /// Adds the product `a b` to the derivative with respect to an operand.
-    fn add_product(&mut self, operand: Operand, a: Operand, b: Operand) {
+    fn add_product_to_derivative(&mut self, operand: Operand, a: Operand, b: Operand) {
         if matches!(operand, Operand::Const(_)) || a == Operand::Const(0.0) || b == Operand::Const(0.0) {
             return;
         }
@@ -319,8 +319,8 @@ impl ReverseModeProgram {
                 self.subtract_from_derivative(b, factor);
             }
             Op::Mul(a, b) => {
-                self.add_product(a, factor, b);
-                self.add_product(b, factor, a);
+                self.add_product_to_derivative(a, factor, b);
+                self.add_product_to_derivative(b, factor, a);
             }
             Op::Div(a, b) => {
                 let over = self.push_instruction(Op::Div(factor, b));
@@ -328,13 +328,13 @@ impl ReverseModeProgram {
                 self.subtract_product_from_derivative(b, over, value);
             }
             Op::MulAdd(a, b, c) => {
-                self.add_product(a, factor, b);
-                self.add_product(b, factor, a);
+                self.add_product_to_derivative(a, factor, b);
+                self.add_product_to_derivative(b, factor, a);
                 self.add(c, factor);
             }
             Op::MulSub(a, b, c) => {
-                self.add_product(a, factor, b);
-                self.add_product(b, factor, a);
+                self.add_product_to_derivative(a, factor, b);
+                self.add_product_to_derivative(b, factor, a);
                 self.subtract_from_derivative(c, factor);
             }
             Op::NegMulAdd(a, b, c) => {
@@ -344,13 +344,13 @@ impl ReverseModeProgram {
             }
             Op::Call(f, x) => {
                 let slope = self.slope_of_elementary(f, x, value);
-                self.add_product(x, factor, slope);
+                self.add_product_to_derivative(x, factor, slope);
             }
             Op::Atan2(y, x) => {
                 let square = self.push_instruction(Op::Mul(y, y));
                 let square = self.push_instruction(Op::MulAdd(x, x, square));
                 let over = self.push_instruction(Op::Div(factor, square));
-                self.add_product(y, over, x);
+                self.add_product_to_derivative(y, over, x);
                 self.subtract_product_from_derivative(x, over, y);
             }
             Op::Pow(a, b) => {
@@ -358,11 +358,11 @@ impl ReverseModeProgram {
                 let less = self.push_instruction(Op::Sub(b, Operand::Const(1.0)));
                 let power = self.push_instruction(Op::Pow(a, less));
                 let slope = self.push_instruction(Op::Mul(b, power));
-                self.add_product(a, factor, slope);
+                self.add_product_to_derivative(a, factor, slope);
                 if !matches!(b, Operand::Const(_)) {
                     let logarithm = self.call_elementary(Elementary::Ln, a);
                     let slope = self.push_instruction(Op::Mul(value, logarithm));
-                    self.add_product(b, factor, slope);
+                    self.add_product_to_derivative(b, factor, slope);
                 }
             }
             Op::Extreme(which, a, b) => {
@@ -374,14 +374,14 @@ impl ReverseModeProgram {
                 let half = Operand::Const(0.5);
                 let of_a = self.push_instruction(Op::MulAdd(half, sign, half));
                 let of_b = self.push_instruction(Op::NegMulAdd(half, sign, half));
-                self.add_product(a, factor, of_a);
-                self.add_product(b, factor, of_b);
+                self.add_product_to_derivative(a, factor, of_a);
+                self.add_product_to_derivative(b, factor, of_b);
             }
             Op::Table(lookup, a, b, c) => {
                 for (k, x) in [a, b, c].into_iter().take(lookup.variable_count()).enumerate() {
                     if let Some(slope) = lookup.partial_derivative(k) {
                         let slope = self.push_instruction(Op::Table(slope, a, b, c));
-                        self.add_product(x, factor, slope);
+                        self.add_product_to_derivative(x, factor, slope);
                     }
                 }
             }

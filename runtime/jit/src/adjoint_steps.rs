@@ -13,25 +13,25 @@ use nalgebra::{DMatrix, Quaternion, UnitQuaternion, Vector3};
 #[derive(Debug)]
 pub struct AdjointStepper {
     stepper: Stepper,
-    dynamics: Gradient,
-    forces: Option<Gradient>,
+    dynamics: VectorJacobianWithResults,
+    forces: Option<VectorJacobianWithResults>,
 }
 
 /// Vector–Jacobian product of a function, with storage for its results.
 #[derive(Debug)]
-struct Gradient {
+struct VectorJacobianWithResults {
     product: VectorJacobian,
     /// Names and lengths of the function's arguments.
     arguments: Vec<(&'static str, usize)>,
     found: Vec<f64>,
 }
 
-impl Gradient {
-    fn new(robot: &Robot, name: &str) -> Result<Gradient, Error> {
+impl VectorJacobianWithResults {
+    fn new(robot: &Robot, name: &str) -> Result<VectorJacobianWithResults, Error> {
         let function = robot.function(name)?;
         let product = function.vector_jacobian()?;
         let found = vec![0.0; product.length()];
-        Ok(Gradient { product, arguments: function.arguments(), found })
+        Ok(VectorJacobianWithResults { product, arguments: function.arguments(), found })
     }
 
     /// Evaluates the derivatives; arguments are passed by name, and those without a value are empty.
@@ -101,9 +101,13 @@ impl AdjointStepper {
         }
         let forces = match robot.nu() {
             0 => None,
-            _ => Some(Gradient::new(robot, "generalized_forces")?),
+            _ => Some(VectorJacobianWithResults::new(robot, "generalized_forces")?),
         };
-        Ok(AdjointStepper { stepper, dynamics: Gradient::new(robot, "forward_dynamics")?, forces })
+        Ok(AdjointStepper {
+            stepper,
+            dynamics: VectorJacobianWithResults::new(robot, "forward_dynamics")?,
+            forces,
+        })
     }
 
     /// Returns the robot of the adjoint steps, whose parameters may be changed.

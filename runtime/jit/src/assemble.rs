@@ -35,35 +35,35 @@ impl Visitor for ConstraintQuery<'_> {
         let (robot, held) = (m.robot(), self.held);
         let t = robot.time();
         let padded_vector = |x: &[f64]| SVector::<f64, N>::from_fn(|k, _| x.get(k).copied().unwrap_or(0.0));
-        let configuration_result = |q: SVector<f64, N>| (q.as_slice()[..robot.nq()].to_vec(), None);
-        let velocity_result = |v: SVector<f64, N>| (v.as_slice()[..robot.nv()].to_vec(), None);
+        let result_from_configuration = |q: SVector<f64, N>| (q.as_slice()[..robot.nq()].to_vec(), None);
+        let result_from_velocity = |v: SVector<f64, N>| (v.as_slice()[..robot.nv()].to_vec(), None);
         let q = padded_vector(self.q);
         match self.question {
             ConstraintTask::Assemble(mode) => {
-                m.assemble_configuration(t, &q, held, mode).map(configuration_result)
+                m.assemble_configuration(t, &q, held, mode).map(result_from_configuration)
             }
             ConstraintTask::LeastViolation => {
                 linkwork::__private::least_violation(&m.assembly_constraints(t), &q, held)
-                    .map(configuration_result)
+                    .map(result_from_configuration)
             }
             ConstraintTask::Mode => Ok((Vec::new(), m.current_assembly_mode(t, &q, held))),
             ConstraintTask::Project => {
-                Constrained::<N, N, N, N, N>::project_configuration(m, t, &q).map(configuration_result)
+                Constrained::<N, N, N, N, N>::project_configuration(m, t, &q).map(result_from_configuration)
             }
             ConstraintTask::Velocity(v) => {
                 Constrained::<N, N, N, N, N>::complete_velocity(m, t, &q, &padded_vector(v), held)
-                    .map(velocity_result)
+                    .map(result_from_velocity)
             }
             ConstraintTask::ProjectVelocity(v) => {
                 Constrained::<N, N, N, N, N>::project_velocity(m, t, &q, &padded_vector(v))
-                    .map(velocity_result)
+                    .map(result_from_velocity)
             }
         }
     }
 }
 
 impl Robot {
-    fn solve_assembly_question(
+    fn solve_constraint_task(
         &self,
         question: ConstraintTask<'_>,
         q: &[f64],
@@ -94,7 +94,7 @@ impl Robot {
     /// There are no constraints, a slice has the wrong length, or no configuration is found
     /// ([`Error::Motion`]).
     pub fn assemble(&self, q: &[f64], held: &[usize]) -> Result<DVector<f64>, Error> {
-        Ok(self.solve_assembly_question(ConstraintTask::Assemble(None), q, held)?.0)
+        Ok(self.solve_constraint_task(ConstraintTask::Assemble(None), q, held)?.0)
     }
 
     /// Returns a configuration near `q` that satisfies the constraints and has this assembly mode, see
@@ -104,7 +104,7 @@ impl Robot {
     ///
     /// As [`assemble`](Self::assemble).
     pub fn assemble_in_mode(&self, q: &[f64], held: &[usize], mode: i8) -> Result<DVector<f64>, Error> {
-        Ok(self.solve_assembly_question(ConstraintTask::Assemble(Some(mode)), q, held)?.0)
+        Ok(self.solve_constraint_task(ConstraintTask::Assemble(Some(mode)), q, held)?.0)
     }
 
     /// Returns the configuration of least constraint violation near `q`, which steps of bounded length reach.
@@ -115,7 +115,7 @@ impl Robot {
     /// As [`assemble`](Self::assemble).
     #[doc(hidden)]
     pub fn least_violation(&self, q: &[f64], held: &[usize]) -> Result<DVector<f64>, Error> {
-        Ok(self.solve_assembly_question(ConstraintTask::LeastViolation, q, held)?.0)
+        Ok(self.solve_constraint_task(ConstraintTask::LeastViolation, q, held)?.0)
     }
 
     /// Returns the heights of the terrains that drawings show, m, at a position along their first two axes,
@@ -142,7 +142,7 @@ impl Robot {
     ///
     /// As [`assemble`](Self::assemble).
     pub fn assembly_mode(&self, q: &[f64], held: &[usize]) -> Result<Option<i8>, Error> {
-        Ok(self.solve_assembly_question(ConstraintTask::Mode, q, held)?.1)
+        Ok(self.solve_constraint_task(ConstraintTask::Mode, q, held)?.1)
     }
 
     /// Returns the configuration nearest to `q` (`nq` entries) that satisfies the constraints, in the metric
@@ -152,7 +152,7 @@ impl Robot {
     ///
     /// As [`assemble`](Self::assemble).
     pub fn project_configuration(&self, q: &[f64]) -> Result<DVector<f64>, Error> {
-        Ok(self.solve_assembly_question(ConstraintTask::Project, q, &[])?.0)
+        Ok(self.solve_constraint_task(ConstraintTask::Project, q, &[])?.0)
     }
 
     /// Returns the velocity nearest to `v` (`nv` entries) that satisfies the constraints at `q`, in the
@@ -162,7 +162,7 @@ impl Robot {
     ///
     /// As [`assemble`](Self::assemble).
     pub fn project_velocity(&self, q: &[f64], v: &[f64]) -> Result<DVector<f64>, Error> {
-        Ok(self.solve_assembly_question(ConstraintTask::ProjectVelocity(v), q, &[])?.0)
+        Ok(self.solve_constraint_task(ConstraintTask::ProjectVelocity(v), q, &[])?.0)
     }
 
     /// Returns the velocity (`nv` entries) with the entries `held` of `v` that satisfies the constraints, see
@@ -172,7 +172,7 @@ impl Robot {
     ///
     /// As [`assemble`](Self::assemble).
     pub fn complete_velocity(&self, q: &[f64], v: &[f64], held: &[usize]) -> Result<DVector<f64>, Error> {
-        Ok(self.solve_assembly_question(ConstraintTask::Velocity(v), q, held)?.0)
+        Ok(self.solve_constraint_task(ConstraintTask::Velocity(v), q, held)?.0)
     }
 
     /// Returns the ratio of the smallest to the largest singular value of the matrix from joint velocities to

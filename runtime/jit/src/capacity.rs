@@ -36,7 +36,10 @@ const STACK: usize = 64 << 20;
 const LARGE_STACK: usize = if cfg!(target_pointer_width = "64") { 1 << 30 } else { 256 << 20 };
 
 /// Runs a function on a thread with a stack of this size, and waits for it.
-fn on_stack<T: Send>(size: usize, run: impl FnOnce() -> Result<T, Error> + Send) -> Result<T, Error> {
+fn run_with_stack_size<T: Send>(
+    size: usize,
+    run: impl FnOnce() -> Result<T, Error> + Send,
+) -> Result<T, Error> {
     std::thread::scope(|scope| {
         let thread = std::thread::Builder::new().name("linkwork".to_string()).stack_size(size);
         let thread = thread.spawn_scoped(scope, run).map_err(|error| Error::Internal(error.to_string()))?;
@@ -55,9 +58,12 @@ impl Robot {
     }
 
     /// Runs a simulation, on a thread of its own if its matrices need more stack than threads usually have.
-    pub(crate) fn with_stack(&self, run: impl FnOnce() -> Result<(), Error> + Send) -> Result<(), Error> {
+    pub(crate) fn run_with_sufficient_stack(
+        &self,
+        run: impl FnOnce() -> Result<(), Error> + Send,
+    ) -> Result<(), Error> {
         match self.largest_dimension() > 24 || self.shared.contacts.len() > 8 {
-            true => on_stack(STACK, run),
+            true => run_with_stack_size(STACK, run),
             false => run(),
         }
     }
@@ -79,7 +85,7 @@ impl Robot {
             ..=8 => Ok(visitor.visit(&Padded::<8, 8, 8, _>::new(self)?)),
             9..=24 => Ok(visitor.visit(&Padded::<24, 24, 24, _>::new(self)?)),
             25..=MEDIUM => Ok(visitor.visit(&Padded::<MEDIUM, MEDIUM, MEDIUM, _>::new(self)?)),
-            count if count <= LARGEST => on_stack(LARGE_STACK, || {
+            count if count <= LARGEST => run_with_stack_size(LARGE_STACK, || {
                 Ok(visitor.visit(&Padded::<LARGEST, LARGEST, LARGEST, _>::new(self)?))
             }),
             count => {
@@ -110,7 +116,7 @@ impl Robot {
                 Ok(visitor
                     .visit(&PaddedContacts::<MEDIUM, MEDIUM, MEDIUM, MOST_CONTACTS, 384, _>::new(self)?))
             }
-            count if count <= LARGEST => on_stack(LARGE_STACK, || {
+            count if count <= LARGEST => run_with_stack_size(LARGE_STACK, || {
                 Ok(visitor
                     .visit(&PaddedContacts::<LARGEST, LARGEST, LARGEST, MOST_CONTACTS, 384, _>::new(self)?))
             }),

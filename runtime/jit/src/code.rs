@@ -24,8 +24,8 @@ use crate::table::AnyTable;
 use linkwork::__private::{Arithmetic, Evaluate, dispatch_in_any_build};
 use linkwork_compiler::expr::Function as Elementary;
 use linkwork_compiler::lower::Program;
-use pieces::Pieces;
-use plan::{Allocation, WIDEST};
+use pieces::ProgramInPieces;
+use plan::{ProgramPlan, WIDEST};
 use std::mem::MaybeUninit;
 
 /// Declares functions in the calling convention of generated code, that of System V on all systems.
@@ -71,7 +71,7 @@ enum ExecutableMemory {
     #[cfg(target_arch = "x86_64")]
     Pages(#[allow(dead_code, reason = "holds the memory")] memmap2::Mmap),
     #[cfg(any(test, target_arch = "aarch64"))]
-    Module(#[allow(dead_code, reason = "holds the memory")] Box<cranelift::Module>),
+    Module(#[allow(dead_code, reason = "holds the memory")] Box<cranelift::OwnedJitModule>),
 }
 
 impl Code {
@@ -89,9 +89,9 @@ impl Code {
         if !x86::is_supported() {
             return Err("the processor has neither AVX2 nor FMA".to_string());
         }
-        let pieces = program.simd.as_ref().and_then(|simd| Pieces::split_program(simd, layout).ok());
-        let pieces = pieces.map_or_else(|| Pieces::split_program(program, layout), Ok)?;
-        let mut plan = Allocation::new(pieces, layout, results, x86::REGISTERS)?;
+        let pieces = program.simd.as_ref().and_then(|simd| ProgramInPieces::split_program(simd, layout).ok());
+        let pieces = pieces.map_or_else(|| ProgramInPieces::split_program(program, layout), Ok)?;
+        let mut plan = ProgramPlan::new(pieces, layout, results, x86::REGISTERS)?;
         let bytes = x86::write(&mut plan, results, helper_address)?;
         let memory = memmap2::MmapMut::map_anon(bytes.len()).and_then(|mut memory| {
             memory.copy_from_slice(&bytes);
@@ -110,14 +110,14 @@ impl Code {
     /// Compiles a program to machine code with Cranelift.
     #[cfg(any(test, target_arch = "aarch64"))]
     fn compile_with_cranelift(program: &Program, layout: &Layout, results: usize) -> Result<Code, String> {
-        let pieces = Pieces::split_program(program, layout)?;
-        let plan = Allocation::new(pieces, layout, results, cranelift::REGISTERS)?;
+        let pieces = ProgramInPieces::split_program(program, layout)?;
+        let plan = ProgramPlan::new(pieces, layout, results, cranelift::REGISTERS)?;
         let (module, address) = cranelift::translate(&plan, results, helper_address)?;
         let outputs = [results, program.outputs.len() - results];
         Ok(Code::new(plan, outputs, address, ExecutableMemory::Module(Box::new(module))))
     }
 
-    fn new(plan: Allocation, outputs: [usize; 2], address: *const u8, memory: ExecutableMemory) -> Code {
+    fn new(plan: ProgramPlan, outputs: [usize; 2], address: *const u8, memory: ExecutableMemory) -> Code {
         // SAFETY: the code at this address was generated with this signature.
         let entry = unsafe { std::mem::transmute::<*const u8, Entry>(address) };
         let four_constants =
@@ -271,10 +271,10 @@ impl Evaluate<0, &mut [f64]> for SineCosineEvaluation {
     #[inline(always)]
     fn evaluate<A: Arithmetic>(&self, array: &mut [f64]) {
         let (groups, last) = array.as_chunks_mut::<{ 3 * WIDEST }>();
-        groups.iter_mut().for_each(|group| sines_of_group::<A, WIDEST>(group));
+        groups.iter_mut().for_each(|group| write_group_sines_and_cosines::<A, WIDEST>(group));
         match last.len() {
-            3 => sines_of_group::<A, 1>(last),
-            6 => sines_of_group::<A, 2>(last),
+            3 => write_group_sines_and_cosines::<A, 1>(last),
+            6 => write_group_sines_and_cosines::<A, 2>(last),
             _ => {}
         }
     }
@@ -282,7 +282,7 @@ impl Evaluate<0, &mut [f64]> for SineCosineEvaluation {
 
 /// Writes the sines, then the cosines, of `N` angles after them.
 #[inline(always)]
-fn sines_of_group<A: Arithmetic, const N: usize>(group: &mut [f64]) {
+fn write_group_sines_and_cosines<A: Arithmetic, const N: usize>(group: &mut [f64]) {
     if let ([angles, sines, cosines], _) = group.as_chunks_mut::<N>() {
         (*sines, *cosines) = A::sin_cos_all(*angles);
     }

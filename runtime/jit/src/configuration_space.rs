@@ -134,7 +134,7 @@ impl ConfigurationSpaceFunction {
         };
         let velocity_argument = |name| Argument::Given(name, SuppliedQuantity::State, nv);
         let configuration_argument = |name| Argument::Given(name, SuppliedQuantity::State, nq);
-        let mut add = |kind, name, documentation: &str, arguments: Vec<Argument>, rows| {
+        let mut add_function_entry = |kind, name, documentation: &str, arguments: Vec<Argument>, rows| {
             let results = vec![Matrix { name: "result", rows, columns: 1 }];
             let plan =
                 ResultAssembly::ConfigurationSpaceFunction(ConfigurationSpaceFunction { kind, speeds });
@@ -144,7 +144,7 @@ impl ConfigurationSpaceFunction {
             maker.entries.push(Entry { work, ..entry });
         };
         let dv = velocity_argument("dv");
-        add(
+        add_function_entry(
             ConfigurationSpaceOperation::Integrate,
             "integrate",
             "Configuration that is reached from `q` in one unit of time with the constant velocity `dv`; \
@@ -152,7 +152,7 @@ impl ConfigurationSpaceFunction {
             vec![Argument::Q, dv],
             nq,
         );
-        add(
+        add_function_entry(
             ConfigurationSpaceOperation::Difference,
             "difference",
             "Velocity that leads from one configuration to another in one unit of time.",
@@ -160,14 +160,14 @@ impl ConfigurationSpaceFunction {
             nv,
         );
         match speeds {
-            None => add(
+            None => add_function_entry(
                 ConfigurationSpaceOperation::TangentRate,
                 "tangent_rate",
                 "Rate of `dv` for which `integrate(q, dv)` moves with velocity `v`.",
                 vec![dv, Argument::V],
                 nv,
             ),
-            Some(_) => add(
+            Some(_) => add_function_entry(
                 ConfigurationSpaceOperation::DisplacementRate,
                 "displacement_rate",
                 "Rate of `dv` for which `integrate(q, dv)` moves with the speeds `v`.",
@@ -207,25 +207,25 @@ impl ConfigurationSpaceFunction {
         let (rate, rest) = rest.split_at_mut(nv);
         let (change, rest) = rest.split_at_mut(nv);
         let (there, rest) = rest.split_at_mut(nq);
-        let mut call = |function: usize, q: &[f64], v: &[f64], out: &mut [f64]| {
+        let mut call_velocity_conversion = |function: usize, q: &[f64], v: &[f64], out: &mut [f64]| {
             let given = [(Argument::Q, q), (Argument::V, v)];
             shared.call(function, values, &[], &given, out, rest);
         };
         match self.kind {
             ConfigurationSpaceOperation::Integrate => {
-                call(rates, inputs[0], inputs[1], way);
+                call_velocity_conversion(rates, inputs[0], inputs[1], way);
                 integrate(charts, inputs[0], way, out);
             }
             ConfigurationSpaceOperation::Difference => {
                 difference(charts, inputs[0], inputs[1], way);
-                call(speeds, inputs[0], way, out);
+                call_velocity_conversion(speeds, inputs[0], way, out);
             }
             ConfigurationSpaceOperation::TangentRate | ConfigurationSpaceOperation::DisplacementRate => {
-                call(rates, inputs[0], inputs[1], way);
+                call_velocity_conversion(rates, inputs[0], inputs[1], way);
                 integrate(charts, inputs[0], way, there);
-                call(rates, there, inputs[2], rate);
+                call_velocity_conversion(rates, there, inputs[2], rate);
                 tangent_rate(charts, way, rate, change);
-                call(speeds, inputs[0], change, out);
+                call_velocity_conversion(speeds, inputs[0], change, out);
             }
         }
     }

@@ -8,7 +8,7 @@ use crate::padded::Padded;
 use crate::robot::Robot;
 use linkwork::nalgebra::{SMatrix, SVector};
 use linkwork::{Constrained, Derivatives, SecondDerivatives};
-use linkwork_compiler::catalogue::{Argument, Id};
+use linkwork_compiler::catalogue::{Argument, GeneratedId};
 
 /// Function of a constrained mechanism that the runtime evaluates, instead of a compiled program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,14 +27,14 @@ pub(crate) enum ConstrainedDynamicsFunction {
 /// Adds the functions of constrained dynamics to those of a mechanism, if it has constraints and dynamics,
 /// and the second derivatives of its accelerations, if they are requested.
 pub(crate) fn add(maker: &mut CallableFunctionBuilder<'_, '_>) {
-    let has_function = |id: Id| maker.output.functions.iter().any(|f| f.id == id);
+    let has_function = |id: GeneratedId| maker.output.functions.iter().any(|f| f.id == id);
     let (nv, nc) = (maker.model.nv(), maker.model.constraints.len());
-    let is_constrained = has_function(Id::ConstrainedDynamics);
+    let is_constrained = has_function(GeneratedId::ConstrainedDynamics);
     let time = maker.model.time.then_some(Argument::T);
     let arguments: Vec<Argument> =
         time.into_iter().chain([Argument::Q, Argument::V, Argument::Tau]).collect();
-    let square = |name| Matrix { name, rows: nv, columns: nv };
-    let vector = |name, rows| Matrix { name, rows, columns: 1 };
+    let square_matrix_shape = |name| Matrix { name, rows: nv, columns: nv };
+    let vector_shape = |name, rows| Matrix { name, rows, columns: 1 };
     let mut functions = Vec::new();
     if is_constrained {
         functions.push((
@@ -42,32 +42,32 @@ pub(crate) fn add(maker: &mut CallableFunctionBuilder<'_, '_>) {
             "forward_dynamics",
             "Accelerations under the generalized forces `tau` and the forces of the constraints; NaN where \
              friction jams.",
-            vec![vector("result", nv)],
+            vec![vector_shape("result", nv)],
         ));
         functions.push((
             ConstrainedDynamicsFunction::Dynamics,
             "constrained_dynamics",
             "Accelerations under the generalized forces `tau`, and the multipliers of the constraints.",
-            vec![vector("accelerations", nv), vector("multipliers", nc)],
+            vec![vector_shape("accelerations", nv), vector_shape("multipliers", nc)],
         ));
     }
-    if is_constrained && has_function(Id::MotionDerivatives) {
+    if is_constrained && has_function(GeneratedId::MotionDerivatives) {
         functions.push((
             ConstrainedDynamicsFunction::Derivatives,
             "forward_dynamics_derivatives",
             "Derivatives of the accelerations under the constraints with respect to `q`, `v` and `tau`.",
-            ["by_q", "by_v", "by_tau"].map(square).to_vec(),
+            ["by_q", "by_v", "by_tau"].map(square_matrix_shape).to_vec(),
         ));
     }
-    if has_function(Id::InverseDynamicsSecondDerivatives)
-        && is_constrained == has_function(Id::ConstraintCurvature)
+    if has_function(GeneratedId::InverseDynamicsSecondDerivatives)
+        && is_constrained == has_function(GeneratedId::ConstraintCurvature)
     {
         functions.push((
             ConstrainedDynamicsFunction::SecondDerivatives,
             "forward_dynamics_second_derivatives",
             "Second derivatives of the accelerations under the generalized forces `tau`, contracted with the \
              factors `lambda`. Rows of mixed derivatives belong to `q`; all others are zero.",
-            ["by_qq", "by_qv", "by_vv", "by_qtau"].map(square).to_vec(),
+            ["by_qq", "by_qv", "by_vv", "by_qtau"].map(square_matrix_shape).to_vec(),
         ));
     }
     for (kind, name, documentation, results) in functions {

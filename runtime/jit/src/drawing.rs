@@ -8,7 +8,7 @@ use linkwork_compiler::compile_with_passes;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::{Graph, Lookup, Symbol};
 use linkwork_compiler::lower::{Program, lower};
-use linkwork_compiler::mechanism::{self, PieceKind, Quantity, SuppliedQuantity};
+use linkwork_compiler::mechanism::{self, PieceShape, Quantity, SuppliedQuantity};
 use linkwork_compiler::passes::Passes;
 use std::collections::HashSet;
 use std::sync::Mutex;
@@ -97,7 +97,7 @@ pub fn drawn(piece: &mechanism::Piece<'_>, first: usize) -> Piece {
     Piece {
         name: intern_text(&piece.name),
         role: convert_drawing_role(piece.role),
-        kind: kind_of_piece(&piece.kind),
+        kind: convert_piece_kind(&piece.kind),
         frames: piece.frames,
         first,
     }
@@ -116,50 +116,50 @@ fn intern_text(text: &str) -> &'static str {
     new
 }
 
-fn convert_drawing_role(role: mechanism::Role) -> Role {
+fn convert_drawing_role(role: mechanism::ShownObjectKind) -> Role {
     match role {
-        mechanism::Role::Body => Role::Body,
-        mechanism::Role::Link => Role::Link,
-        mechanism::Role::Visual => Role::Visual,
-        mechanism::Role::Joint => Role::Joint,
-        mechanism::Role::Surface => Role::Surface,
-        mechanism::Role::Element => Role::Element,
-        mechanism::Role::Input => Role::Input,
-        mechanism::Role::Gravity => Role::Gravity,
+        mechanism::ShownObjectKind::Body => Role::Body,
+        mechanism::ShownObjectKind::Link => Role::Link,
+        mechanism::ShownObjectKind::Visual => Role::Visual,
+        mechanism::ShownObjectKind::Joint => Role::Joint,
+        mechanism::ShownObjectKind::Surface => Role::Surface,
+        mechanism::ShownObjectKind::Element => Role::Element,
+        mechanism::ShownObjectKind::Input => Role::Input,
+        mechanism::ShownObjectKind::Gravity => Role::Gravity,
     }
 }
 
-fn kind_of_piece(kind: &PieceKind) -> Kind {
+fn convert_piece_kind(kind: &PieceShape) -> Kind {
     match kind {
-        PieceKind::Rod => Kind::Rod,
-        PieceKind::Ring => Kind::Ring,
-        PieceKind::Disk => Kind::Disk,
-        PieceKind::Cylinder => Kind::Cylinder,
-        PieceKind::Tube => Kind::Tube,
-        PieceKind::Cone => Kind::Cone,
-        PieceKind::Capsule => Kind::Capsule,
-        PieceKind::Sphere => Kind::Sphere,
-        PieceKind::Cuboid => Kind::Cuboid,
-        PieceKind::Ellipsoid => Kind::Ellipsoid,
-        PieceKind::Inertia => Kind::Inertia,
-        PieceKind::Plane => Kind::Plane,
-        PieceKind::Funnel => Kind::Funnel,
-        PieceKind::Pipe => Kind::Pipe,
-        PieceKind::Torus => Kind::Torus,
-        PieceKind::Bowl => Kind::Bowl,
-        PieceKind::Point => Kind::Point,
-        PieceKind::Bar => Kind::Bar,
-        PieceKind::Hinge => Kind::Hinge,
-        PieceKind::Slide => Kind::Slide,
-        PieceKind::Ball => Kind::Ball,
-        PieceKind::Coil => Kind::Coil,
-        PieceKind::Spiral => Kind::Spiral,
-        PieceKind::Damper => Kind::Damper,
-        PieceKind::Brake => Kind::Brake,
-        PieceKind::Force(k) => Kind::Force(*k),
-        PieceKind::Torque(k) => Kind::Torque(*k),
-        PieceKind::Gravity => Kind::Gravity,
-        PieceKind::Terrain(k) => Kind::Terrain(*k),
-        PieceKind::Mesh(path) => Kind::Mesh(intern_text(path)),
+        PieceShape::Rod => Kind::Rod,
+        PieceShape::Ring => Kind::Ring,
+        PieceShape::Disk => Kind::Disk,
+        PieceShape::Cylinder => Kind::Cylinder,
+        PieceShape::Tube => Kind::Tube,
+        PieceShape::Cone => Kind::Cone,
+        PieceShape::Capsule => Kind::Capsule,
+        PieceShape::Sphere => Kind::Sphere,
+        PieceShape::Cuboid => Kind::Cuboid,
+        PieceShape::Ellipsoid => Kind::Ellipsoid,
+        PieceShape::Inertia => Kind::Inertia,
+        PieceShape::Plane => Kind::Plane,
+        PieceShape::Funnel => Kind::Funnel,
+        PieceShape::Pipe => Kind::Pipe,
+        PieceShape::Torus => Kind::Torus,
+        PieceShape::Bowl => Kind::Bowl,
+        PieceShape::Point => Kind::Point,
+        PieceShape::Bar => Kind::Bar,
+        PieceShape::Hinge => Kind::Hinge,
+        PieceShape::Slide => Kind::Slide,
+        PieceShape::Ball => Kind::Ball,
+        PieceShape::Coil => Kind::Coil,
+        PieceShape::Spiral => Kind::Spiral,
+        PieceShape::Damper => Kind::Damper,
+        PieceShape::Brake => Kind::Brake,
+        PieceShape::Force(k) => Kind::Force(*k),
+        PieceShape::Torque(k) => Kind::Torque(*k),
+        PieceShape::Gravity => Kind::Gravity,
+        PieceShape::Terrain(k) => Kind::Terrain(*k),
+        PieceShape::Mesh(path) => Kind::Mesh(intern_text(path)),
     }
 }

@@ -123,6 +123,6 @@ impl Error {
 impl Robot {
     /// Converts an error of the integrator to an error with the names of the mechanism.
     pub(crate) fn error_from_integrator(&self, reason: integrate::Error) -> Error {
-        Error::Motion { message: self.shared.with_names(&reason.to_string()), reason }
+        Error::Motion { message: self.shared.replace_placeholders_by_names(&reason.to_string()), reason }
     }
 }

@@ -4,8 +4,10 @@
 use crate::functions::{Entry, Matrix, ResultAssembly};
 use crate::merge::ProgramMerger;
 use crate::routine::Routine;
-use linkwork_compiler::catalogue::{Argument, Id};
-use linkwork_compiler::derive::{FrameSteps, LinkRecursionPrograms, Output, PLACEMENT, TWIST};
+use linkwork_compiler::catalogue::{Argument, GeneratedId};
+use linkwork_compiler::derive::{
+    DerivationOutput, FrameRecursionPrograms, LinkRecursionPrograms, PLACEMENT, TWIST,
+};
 use linkwork_compiler::lower::{Op, Operand, Program};
 use linkwork_compiler::mechanism::{Model, Quantity, SuppliedQuantity};
 
@@ -32,7 +34,7 @@ impl Access {
         }
     }
 
-    fn access_documentation(self, frame: &str) -> String {
+    fn frame_function_documentation(self, frame: &str) -> String {
         match self {
             Access::Placement => format!(
                 "Placement of `{frame}` in the ground: the rotation matrix from the axes of the frame to \
@@ -61,7 +63,7 @@ impl Access {
 pub(crate) struct Frames {
     pub names: Vec<String>,
     links: Vec<LinkRecursionPrograms>,
-    frames: Vec<FrameSteps>,
+    frames: Vec<FrameRecursionPrograms>,
     /// Programs of a mechanism with generalized speeds: the joint velocities, the joint accelerations, and
     /// the matrix from speeds to joint velocities.
     speeds: Option<[Program; 3]>,
@@ -70,10 +72,11 @@ pub(crate) struct Frames {
 
 impl Frames {
     /// Takes the kinematic programs of links and frames from the compiler's output.
-    pub fn new(model: &Model<'_>, output: &mut Output) -> Frames {
+    pub fn new(model: &Model<'_>, output: &mut DerivationOutput) -> Frames {
         let program_of_function =
-            |id: Id| output.functions.iter().find(|f| f.id == id).map(|f| f.program.clone());
-        let speeds = [Id::RatesOfSpeeds, Id::RateAccelerations, Id::RateMatrix].map(program_of_function);
+            |id: GeneratedId| output.functions.iter().find(|f| f.id == id).map(|f| f.program.clone());
+        let speeds = [GeneratedId::RatesOfSpeeds, GeneratedId::RateAccelerations, GeneratedId::RateMatrix]
+            .map(program_of_function);
         let speeds = match speeds {
             [Some(rates), Some(accelerations), Some(matrix)] => Some([rates, accelerations, matrix]),
             _ => None,
@@ -90,7 +93,7 @@ impl Frames {
 
     /// Returns the functions of all frames: placement, velocity, acceleration and Jacobian of each frame.
     pub fn entries(&self, time: bool) -> Vec<Entry> {
-        let access_functions_of_frame = |frame: usize| {
+        let functions_of_frame = |frame: usize| {
             Access::ALL.into_iter().filter_map(move |access| {
                 use Argument::{A, Q, T, V};
                 let state: &[Argument] = match access {
@@ -112,13 +115,13 @@ impl Frames {
                 let routine = Routine::routine_built_on_demand(&arguments, length)?;
                 let name = &self.names[frame];
                 let plan = ResultAssembly::Frame(access, frame, routine);
-                let documentation = access.access_documentation(name);
+                let documentation = access.frame_function_documentation(name);
                 let rank = if matches!(access, Access::Placement | Access::Jacobian) { 2 } else { 1 };
                 let name = format!("{}({name})", access.frame_function_name());
                 Some(Entry { rank, ..Entry::new(&name, documentation, arguments, results, plan) })
             })
         };
-        (0..self.names.len()).flat_map(access_functions_of_frame).collect()
+        (0..self.names.len()).flat_map(functions_of_frame).collect()
     }
 
     /// Returns the indices of the links on the path from the ground to a frame, the link nearest to the
@@ -156,10 +159,10 @@ impl Frames {
         if let Some([rates, accelerations, _]) = &self.speeds {
             // Steps are in joint velocities. Both programs take speeds: they come before the exchange.
             let accelerations = match access {
-                Access::Acceleration => merged.append(accelerations),
+                Access::Acceleration => merged.append_program(accelerations),
                 _ => Vec::new(),
             };
-            let rates = merged.append(rates);
+            let rates = merged.append_program(rates);
             for (k, rate) in rates.into_iter().enumerate() {
                 merged.bind_symbol(Quantity::Velocity(k).symbol(), rate);
             }
@@ -224,7 +227,7 @@ impl Frames {
     /// declares speeds.
     fn jacobian_in_speeds(&self, merged: &mut ProgramMerger, jacobian: Vec<Operand>) -> Vec<Operand> {
         let Some([.., matrix]) = &self.speeds else { return jacobian };
-        let matrix = merged.append(matrix);
+        let matrix = merged.append_program(matrix);
         let mut product = vec![Operand::Const(0.0); TWIST * self.nv];
         for j in 0..self.nv {
             for i in 0..TWIST {
@@ -257,7 +260,7 @@ fn append_program_with_inputs(
     for (k, value) in values.iter().copied().flatten().enumerate() {
         merged.bind_symbol(Quantity::Given(SuppliedQuantity::Parent, k).symbol(), *value);
     }
-    merged.append(program)
+    merged.append_program(program)
 }
 
 fn sum_of_operands(merged: &mut ProgramMerger, a: Operand, b: Operand) -> Operand {

@@ -9,8 +9,8 @@ use crate::merge::ProgramMerger;
 use crate::polytopes::takes_features;
 use crate::routine::{Routine, Values};
 use crate::shared::Shared;
-use linkwork_compiler::catalogue::{Argument, Called, Id, REACTION, Record, Shape};
-use linkwork_compiler::derive::{self, Output};
+use linkwork_compiler::catalogue::{Argument, CalledFunction, GeneratedId, REACTION, Record, Shape};
+use linkwork_compiler::derive::{self, DerivationOutput};
 use linkwork_compiler::lower::{Operand, Program};
 use linkwork_compiler::mechanism::{Model, Quantity, SuppliedQuantity};
 use linkwork_compiler::syntax::RATE_OF_STATE;
@@ -142,20 +142,14 @@ impl Entry {
     /// Evaluates the function and writes its results to `out`. The lengths of all slices must be correct.
     pub fn run(&self, shared: &Shared, values: Values<'_>, out: &mut [f64], work: &mut [f64]) {
         match self.takes_features {
-            true => shared.with_features(values, &self.arguments, |values| {
-                self.run_called_forward_dynamics(shared, values, out, work);
+            true => shared.call_with_polytope_features(values, &self.arguments, |values| {
+                self.run_plan(shared, values, out, work);
             }),
-            false => self.run_called_forward_dynamics(shared, values, out, work),
+            false => self.run_plan(shared, values, out, work),
         }
     }
 
-    fn run_called_forward_dynamics(
-        &self,
-        shared: &Shared,
-        values: Values<'_>,
-        out: &mut [f64],
-        work: &mut [f64],
-    ) {
+    fn run_plan(&self, shared: &Shared, values: Values<'_>, out: &mut [f64], work: &mut [f64]) {
         match &self.plan {
             ResultAssembly::Program(routine) => routine.run(values, out, &mut []),
             ResultAssembly::Frame(access, frame, routine) => {
@@ -172,10 +166,10 @@ impl Entry {
                 routine.run(values, out, more);
                 let (forces, matrix) = out.split_at_mut(2 * n * n);
                 inverse.complete(matrix, more, work);
-                solve_for_accelerations(*n, matrix, forces, columns, work);
+                solve_for_acceleration_derivatives(*n, matrix, forces, columns, work);
             }
             ResultAssembly::CalledForward(called) => {
-                called.run_called_forward_dynamics(shared, values, &self.arguments, out, work)
+                called.run_forward_dynamics_derivatives(shared, values, &self.arguments, out, work)
             }
             ResultAssembly::Linear { routine, columns, n, m } => {
                 let (all, work) = work.split_at_mut(4 * n * n + n * m);
@@ -215,7 +209,7 @@ impl Entry {
 }
 
 impl CalledForward {
-    fn run_called_forward_dynamics(
+    fn run_forward_dynamics_derivatives(
         &self,
         shared: &Shared,
         values: Values<'_>,
@@ -233,7 +227,7 @@ impl CalledForward {
         self.inverse.complete(matrix, beside, rest);
         self.inverse.solve(matrix, beside, a, rest);
         shared.call(self.forces, values, arguments, &[(Argument::A, a)], forces, rest);
-        solve_for_accelerations(n, matrix, forces, &self.columns, rest);
+        solve_for_acceleration_derivatives(n, matrix, forces, &self.columns, rest);
         let known = &mut rest[..n * self.places.len()];
         self.known.run(values, known, &mut []);
         for (column, place) in known.chunks_exact(n).zip(&self.places) {
@@ -244,7 +238,7 @@ impl CalledForward {
 
 /// Replaces derivatives of generalized forces by derivatives of accelerations, by products with the inverse
 /// mass matrix.
-fn solve_for_accelerations(
+fn solve_for_acceleration_derivatives(
     n: usize,
     inverse: &[f64],
     forces: &mut [f64],
@@ -280,12 +274,12 @@ fn assemble(n: usize, m: usize, [by_q, by_v, inputs, turning]: [&[f64]; 4], out:
 /// Builder of the callable functions of a mechanism.
 pub(crate) struct CallableFunctionBuilder<'a, 'g> {
     pub model: &'a Model<'g>,
-    pub output: &'a Output,
+    pub output: &'a DerivationOutput,
     pub entries: Vec<Entry>,
 }
 
 impl CallableFunctionBuilder<'_, '_> {
-    fn find_function(&self, id: Id) -> Option<&derive::Function> {
+    fn find_function(&self, id: GeneratedId) -> Option<&derive::Function> {
         self.output.functions.iter().find(|f| f.id == id)
     }
 
@@ -307,11 +301,11 @@ impl CallableFunctionBuilder<'_, '_> {
     /// call.
     fn callable_name_of_function<'f>(&self, f: &'f derive::Function) -> Option<&'f str> {
         match f.id {
-            Id::InputDerivatives => Some("generalized_forces_derivatives"),
+            GeneratedId::InputDerivatives => Some("generalized_forces_derivatives"),
             // Variants that write to several matrices: here all functions do.
-            Id::InverseDynamicsDerivativesInto | Id::ForwardDynamicsDerivativesInto => None,
-            Id::Neutral => Some("neutral"),
-            Id::Limits | Id::Figures => Some(f.name.trim_start_matches('_')),
+            GeneratedId::InverseDynamicsDerivativesInto | GeneratedId::ForwardDynamicsDerivativesInto => None,
+            GeneratedId::Neutral => Some("neutral"),
+            GeneratedId::Limits | GeneratedId::Figures => Some(f.name.trim_start_matches('_')),
             _ if is_internal(f.id) => Some(&f.name),
             _ if f.is_hidden() && f.name.ends_with(RATE_OF_STATE) => Some(&f.name),
             _ if f.is_hidden() || f.name.starts_with("__") => None,
@@ -322,28 +316,31 @@ impl CallableFunctionBuilder<'_, '_> {
     /// Returns the callable function for a derived function; `None` for a function that callers cannot call.
     fn callable_function_entry(&self, f: &derive::Function) -> Option<Entry> {
         let hidden = is_internal(f.id);
-        let has_dynamics = self.find_function(Id::ForwardDynamics).is_some();
-        if f.id == Id::Reaction && has_dynamics && !f.arguments.iter().any(is_contact_forces_argument) {
-            return self.reaction_entry(f);
+        let has_dynamics = self.find_function(GeneratedId::ForwardDynamics).is_some();
+        if f.id == GeneratedId::Reaction
+            && has_dynamics
+            && !f.arguments.iter().any(is_contact_forces_argument)
+        {
+            return self.reaction_output_entry(f);
         }
         let name = self.callable_name_of_function(f)?;
         let arguments: Vec<Argument> = f.arguments.iter().copied().filter(is_passed).collect();
         let (n, m) = (self.model.nv(), self.model.nu());
         let program = self.whole(&f.program);
         let takes_features = takes_features(&program);
-        let features = takes_features.then_some(Argument::Called(Called::ContactFeatures));
+        let features = takes_features.then_some(Argument::Called(CalledFunction::ContactFeatures));
         let inputs: Vec<Argument> = arguments.iter().copied().chain(features).collect();
         let routine_with_result_count = |results: usize| Routine::new(program.clone(), &inputs, results);
         let outputs = program.outputs.len();
         let inverse_assembly_of_function = || Inverse::new(&f.structure.inverse, n);
-        let is_zero_entry = |first: usize| {
+        let zero_entry_predicate = |first: usize| {
             let program = &program;
             move |j: usize, i: usize| program.outputs[first + j * n + i] == Operand::Const(0.0)
         };
         // Columns of derivatives by `q`, `v` and `u` that begin at these outputs.
         let columns_by_q_v_and_u = |[q, v, u]: [usize; 3]| {
             [(n, q), (n, v), (m, u)].map(|(count, first)| {
-                Columns::group(n, &(0..count).collect::<Vec<_>>(), is_zero_entry(first))
+                Columns::group(n, &(0..count).collect::<Vec<_>>(), zero_entry_predicate(first))
             })
         };
         let (plan, work) = match f.shape {
@@ -356,7 +353,7 @@ impl CallableFunctionBuilder<'_, '_> {
                 let inverse = inverse_assembly_of_function();
                 let work =
                     inverse.output_count_after_columns() + inverse.work().max(kernels::work_space_size(n));
-                let columns = self.columns_multiplied_by_inverse(f, &is_zero_entry(0));
+                let columns = self.columns_multiplied_by_inverse(f, &zero_entry_predicate(0));
                 // The accelerations, which come last, have a function of their own.
                 let kept: Vec<usize> = (0..3 * n * n + inverse.output_count_after_columns()).collect();
                 let routine = Routine::new(program.clone().with_selected_outputs(&kept), &inputs, 3 * n * n)?;
@@ -364,7 +361,7 @@ impl CallableFunctionBuilder<'_, '_> {
             }
             Shape::Accelerated(_) | Shape::Symmetric(_) => return None,
             Shape::CalledForward(_) => {
-                let accelerations = self.find_function(Id::AccelerationsAndInverse)?;
+                let accelerations = self.find_function(GeneratedId::AccelerationsAndInverse)?;
                 let inverse = Inverse::new(&accelerations.structure.inverse, n);
                 let forces = self.index("inverse_dynamics_derivatives")?;
                 let known = f.structure.known.iter().zip([0, n]);
@@ -442,41 +439,50 @@ impl CallableFunctionBuilder<'_, '_> {
     /// keeps its variant with lanes.
     pub fn whole(&self, program: &Program) -> Program {
         let symbols = program.used_symbols();
-        let takes_called_argument = |called: Called| {
-            symbols
-                .iter()
-                .any(|symbol| Argument::Called(called).index(Quantity::from_symbol(*symbol)).is_some())
+        let takes_called_argument = |called: CalledFunction| {
+            symbols.iter().any(|symbol| {
+                Argument::Called(called).index_of_quantity(Quantity::from_symbol(*symbol)).is_some()
+            })
         };
         let mut merged = ProgramMerger::default();
         for (called, id, quantity) in [
-            (Called::PassiveForces, Id::PassiveForces, Quantity::PassiveForce as fn(usize) -> Quantity),
-            (Called::PassiveDerivatives, Id::PassiveDerivatives, Quantity::PassiveDerivative),
+            (
+                CalledFunction::PassiveForces,
+                GeneratedId::PassiveForces,
+                Quantity::PassiveForce as fn(usize) -> Quantity,
+            ),
+            (
+                CalledFunction::PassiveDerivatives,
+                GeneratedId::PassiveDerivatives,
+                Quantity::PassiveDerivative,
+            ),
         ] {
             let Some(f) = self.find_function(id).filter(|_| takes_called_argument(called)) else { continue };
-            for (k, output) in merged.append(&f.program).into_iter().enumerate() {
+            for (k, output) in merged.append_program(&f.program).into_iter().enumerate() {
                 merged.bind_symbol(quantity(k).symbol(), output);
             }
         }
-        let outputs = merged.append(program);
-        let calls_others = Called::ALL.into_iter().any(takes_called_argument);
+        let outputs = merged.append_program(program);
+        let calls_others = CalledFunction::ALL.into_iter().any(takes_called_argument);
         Program { simd: program.simd.clone().filter(|_| !calls_others), ..merged.finish(outputs) }
     }
 
     /// Returns the function of an output that contains joint reactions, for the motion that state and inputs
     /// determine.
-    fn reaction_entry(&self, f: &derive::Function) -> Option<Entry> {
+    fn reaction_output_entry(&self, f: &derive::Function) -> Option<Entry> {
         let name = f.name.strip_prefix(REACTION)?;
         let mut merged = ProgramMerger::default();
-        let inputs = self.find_function(Id::GeneralizedForces).filter(|_| self.model.nu() > 0);
+        let inputs = self.find_function(GeneratedId::GeneralizedForces).filter(|_| self.model.nu() > 0);
         let n = self.model.nv();
         let tau = match inputs {
-            Some(f) => merged.append(&self.whole(&f.program)),
+            Some(f) => merged.append_program(&self.whole(&f.program)),
             None => vec![Operand::Const(0.0); n],
         };
         (0..n).zip(tau).for_each(|(k, tau)| merged.bind_symbol(Quantity::Force(k).symbol(), tau));
-        let a = merged.append(&self.whole(&self.find_function(Id::ForwardDynamics)?.program));
+        let a =
+            merged.append_program(&self.whole(&self.find_function(GeneratedId::ForwardDynamics)?.program));
         (0..n).zip(a).for_each(|(k, a)| merged.bind_symbol(Quantity::Acceleration(k).symbol(), a));
-        let outputs = merged.append(&self.whole(&f.program));
+        let outputs = merged.append_program(&self.whole(&f.program));
         let time = self.model.time.then_some(Argument::T);
         let u = (self.model.nu() > 0).then_some(Argument::U);
         let arguments: Vec<Argument> = time.into_iter().chain([Argument::Q, Argument::V]).chain(u).collect();
@@ -530,26 +536,26 @@ fn result_matrix_shapes(shape: Shape, outputs: usize) -> Vec<Matrix> {
 }
 
 /// Whether only the runtime calls the function.
-fn is_internal(id: Id) -> bool {
+fn is_internal(id: GeneratedId) -> bool {
     matches!(
         id,
-        Id::Limits
-            | Id::Figures
-            | Id::ConstrainedDynamics
-            | Id::ConstraintResponse
-            | Id::SlippingResponse
-            | Id::MotionDerivatives
-            | Id::ContactLaws
-            | Id::ContactResponses
-            | Id::ContactDerivatives
-            | Id::ContactDerivativesByParameters
-            | Id::ConstraintCurvature
-            | Id::PolytopePoses
-            | Id::RateMatrix
-            | Id::SpeedMatrix
-            | Id::RateChanges
-            | Id::Turning
-            | Id::Heights
+        GeneratedId::Limits
+            | GeneratedId::Figures
+            | GeneratedId::ConstrainedDynamics
+            | GeneratedId::ConstraintResponse
+            | GeneratedId::SlippingResponse
+            | GeneratedId::MotionDerivatives
+            | GeneratedId::ContactLaws
+            | GeneratedId::ContactResponses
+            | GeneratedId::ContactDerivatives
+            | GeneratedId::ContactDerivativesByParameters
+            | GeneratedId::ConstraintCurvature
+            | GeneratedId::PolytopePoses
+            | GeneratedId::RateMatrix
+            | GeneratedId::SpeedMatrix
+            | GeneratedId::RateChanges
+            | GeneratedId::Turning
+            | GeneratedId::Heights
     )
 }
 

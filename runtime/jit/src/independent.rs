@@ -81,7 +81,7 @@ impl Robot {
                 format!("`{}` was loaded without `derivatives`, or has states of first order", self.name());
             return Err(Error::Value(message));
         }
-        let found = self.visit_padded_robot(Linearised { q, v, u, preferred })?;
+        let found = self.visit_padded_robot(LinearisationPoint { q, v, u, preferred })?;
         found.map_err(|reason| {
             self.error_from_integrator(integrate::Error::Constraint { t: self.time(), reason })
         })
@@ -89,14 +89,14 @@ impl Robot {
 }
 
 /// State and inputs about which the motion is linearised.
-struct Linearised<'a> {
+struct LinearisationPoint<'a> {
     q: &'a [f64],
     v: &'a [f64],
     u: &'a [f64],
     preferred: &'a [usize],
 }
 
-impl Visitor for Linearised<'_> {
+impl Visitor for LinearisationPoint<'_> {
     type Output = Result<IndependentMotion, ConstraintError>;
 
     fn visit<const N: usize>(self, m: &Padded<N, N, N, &Robot>) -> Self::Output {

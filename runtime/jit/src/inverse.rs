@@ -19,8 +19,8 @@ impl Inverse {
             InverseForm::Explicit => Inverse { n, trunk: Vec::new(), limbs: None },
             InverseForm::LowRankUpdate(trunk) => Inverse { n, trunk: trunk.clone(), limbs: None },
             InverseForm::BlockArrow { trunk, limbs } => {
-                let limb_of_index = |k: usize| limbs.iter().position(|limb| limb.contains(&k));
-                Inverse { n, trunk: trunk.clone(), limbs: Some((0..n).map(limb_of_index).collect()) }
+                let limb_of_velocity = |k: usize| limbs.iter().position(|limb| limb.contains(&k));
+                Inverse { n, trunk: trunk.clone(), limbs: Some((0..n).map(limb_of_velocity).collect()) }
             }
         }
     }
@@ -116,7 +116,14 @@ impl Inverse {
         if let Some(limbs) = &self.limbs {
             kernels::run_kernel(
                 self.n,
-                Solution { inverse: self, limbs, matrix: inverse, trunk_factors, column, work },
+                AccelerationComputation {
+                    inverse: self,
+                    limbs,
+                    matrix: inverse,
+                    trunk_factors,
+                    column,
+                    work,
+                },
             );
         }
     }
@@ -142,7 +149,7 @@ impl Kernel for InverseCompletion<'_> {
 }
 
 /// Computation of accelerations from generalized forces by the inverse mass matrix.
-struct Solution<'a> {
+struct AccelerationComputation<'a> {
     inverse: &'a Inverse,
     limbs: &'a [Option<usize>],
     matrix: &'a [f64],
@@ -151,10 +158,10 @@ struct Solution<'a> {
     work: &'a mut [f64],
 }
 
-impl Kernel for Solution<'_> {
+impl Kernel for AccelerationComputation<'_> {
     #[inline(always)]
     fn run(self, mul_add: impl Fn(f64, f64, f64) -> f64 + Copy) {
-        let Solution { inverse, limbs, matrix, trunk_factors, column, work } = self;
+        let AccelerationComputation { inverse, limbs, matrix, trunk_factors, column, work } = self;
         let (n, width) = (inverse.n, inverse.trunk.len());
         let (x, rest) = work[..2 * n].split_at_mut(n);
         rest.copy_from_slice(column);

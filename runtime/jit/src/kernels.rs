@@ -223,17 +223,17 @@ mod tests {
             let entry = |j: usize, i: usize, k: usize| ((37 * j + 11 * i + 5 * k) % 19) as f64 - 9.0;
             let is_zero = |j: usize, i: usize| j > 5 && i > 5 && j / 3 != i / 3;
             let square: Vec<f64> = (0..n * n).map(|k| entry(k / n, k % n, 0)).collect();
-            let matrix = |which: usize| -> Vec<f64> {
-                let entry = |j, i| if is_zero(j, i) { 0.0 } else { entry(j, i, which) };
-                (0..n * n).map(|k| entry(k / n, k % n)).collect()
+            let test_matrix = |which: usize| -> Vec<f64> {
+                let entry_with_zeros = |j, i| if is_zero(j, i) { 0.0 } else { entry(j, i, which) };
+                (0..n * n).map(|k| entry_with_zeros(k / n, k % n)).collect()
             };
-            let (mut first, mut second) = (matrix(1), matrix(2));
+            let (mut first, mut second) = (test_matrix(1), test_matrix(2));
             let columns: Vec<usize> = (0..n).filter(|j| j % 7 != 3).collect();
             let groups = [1, 2].map(|_| Columns::group(n, &columns, is_zero));
             let mut work = vec![f64::NAN; work_space_size(n)];
             replace_by_negative_products(n, &square, [&mut first, &mut second], &groups, &mut work);
             for (which, found) in [(1, first), (2, second)] {
-                let before = matrix(which);
+                let before = test_matrix(which);
                 for k in 0..n * n {
                     let (j, i) = (k / n, k % n);
                     let sum: f64 = (0..n).map(|m| square[m * n + i] * before[j * n + m]).sum();

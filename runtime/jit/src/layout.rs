@@ -25,7 +25,7 @@ impl Layout {
 
     /// Returns the index of the input that contains a symbol, and the symbol's index in it; `None` if no
     /// input contains it.
-    pub fn locate(&self, symbol: Symbol) -> Option<(usize, usize)> {
+    pub fn locate_symbol(&self, symbol: Symbol) -> Option<(usize, usize)> {
         match Quantity::from_symbol(symbol) {
             Quantity::Parameter(k) => Some((0, k)),
             Quantity::Time => {
@@ -33,7 +33,7 @@ impl Layout {
                 Some((1 + at, 0))
             }
             quantity => (self.arguments.iter().enumerate())
-                .find_map(|(at, argument)| Some((1 + at, argument.index(quantity)?))),
+                .find_map(|(at, argument)| Some((1 + at, argument.index_of_quantity(quantity)?))),
         }
     }
 }

@@ -10,7 +10,7 @@ use crate::internal::INTERNAL;
 use crate::methods::METHODS;
 use crate::polytopes::Polytopes;
 use crate::robot::Robot;
-use crate::shared::{Constraints, Contact, FirstOrder, Quantity, Requirement, Shared, Sizes};
+use crate::shared::{Constraints, Contact, FirstOrder, ParameterRequirement, Quantity, Shared, Sizes};
 use linkwork::__private::Rule;
 use linkwork_compiler::diag::{Diagnostic, Diagnostics};
 use linkwork_compiler::expr::Graph;
@@ -18,8 +18,8 @@ use linkwork_compiler::mechanism::{self, Model};
 use linkwork_compiler::passes::Passes;
 use linkwork_compiler::syntax::{EquationsOption, RATE_OF_STATE};
 use linkwork_compiler::{
-    DeclaredStruct, Source, compile_with_passes, derive_above_attribute_error, import,
-    mechanism_declarations, read_source, reject_reproducible_arithmetic,
+    DeclaredStruct, ParsedSource, compile_with_passes, derive_above_attribute_error, import,
+    mechanism_declarations, parse_source_and_import, reject_reproducible_arithmetic,
 };
 use proc_macro2::TokenStream;
 use std::collections::HashMap;
@@ -162,19 +162,19 @@ impl Loader {
     }
 
     /// Reads the declaration of the mechanism and adds the options of the loader.
-    pub(crate) fn read_source(&self) -> Result<Source, Error> {
+    pub(crate) fn read_source(&self) -> Result<ParsedSource, Error> {
         let (mut declaration, folder) = self.read_declaration()?;
         let options: TokenStream = self
             .options
             .parse()
             .map_err(|error| Error::Syntax(format!("options `{}`: {error}", self.options)))?;
-        declaration.add(options);
+        declaration.append_attribute_arguments(options);
         let cx = &mut Diagnostics::new();
         if let Some(attribute) = declaration.derive_above_attribute_error {
-            cx.add(derive_above_attribute_error(attribute));
+            cx.add_diagnostic(derive_above_attribute_error(attribute));
         }
         let DeclaredStruct { arguments, item, .. } = declaration;
-        let source = read_source(arguments, item, &folder, cx);
+        let source = parse_source_and_import(arguments, item, &folder, cx);
         source.filter(|_| cx.is_empty()).ok_or_else(|| self.error_from_diagnostics(cx))
     }
 
@@ -190,7 +190,7 @@ impl Loader {
             Origin::File(path) => {
                 let text = read_text_file(path)?;
                 if !is_rust(path) {
-                    return Ok((DeclaredStruct::of_file(path, &text), base_folder()?));
+                    return Ok((DeclaredStruct::declaration_of_robot_file(path, &text), base_folder()?));
                 }
                 let folder = match &self.folder {
                     Some(folder) => folder.clone(),
@@ -279,22 +279,26 @@ fn read_text_file(path: &Path) -> Result<String, Error> {
 /// Returns the robot of a compiled mechanism, for the command `linkwork`.
 #[doc(hidden)]
 #[must_use]
-pub fn compiled(source: &Source, model: &Model<'_>, output: linkwork_compiler::derive::Output) -> Robot {
+pub fn compiled(
+    source: &ParsedSource,
+    model: &Model<'_>,
+    output: linkwork_compiler::derive::DerivationOutput,
+) -> Robot {
     Robot::new(Arc::new(extract_shared_data(source, model, output)), false)
 }
 
 /// Removes options that only apply to generated Rust code.
 #[doc(hidden)]
-pub fn remove_rust_only_options(source: &mut Source) {
+pub fn remove_rust_only_options(source: &mut ParsedSource) {
     let requests = &mut source.mechanism.requests;
     (requests.prepare, requests.batch, requests.packed) = (false, false, false);
 }
 
 /// Extracts the data of a compiled mechanism that its robots share.
 fn extract_shared_data(
-    source: &Source,
+    source: &ParsedSource,
     model: &Model<'_>,
-    mut output: linkwork_compiler::derive::Output,
+    mut output: linkwork_compiler::derive::DerivationOutput,
 ) -> Shared {
     let frames = Frames::new(model, &mut output);
     let mut maker = CallableFunctionBuilder { model, output: &output, entries: Vec::new() };
@@ -308,8 +312,9 @@ fn extract_shared_data(
     }
     let index: HashMap<String, usize> =
         entries.iter().enumerate().map(|(k, entry)| (entry.name.clone(), k)).collect();
-    let find_indices = |names: &[&str]| names.iter().map(|name| index.get(*name).copied()).collect();
-    let (methods, internal) = (find_indices(METHODS), find_indices(INTERNAL));
+    let indices_of_function_names =
+        |names: &[&str]| names.iter().map(|name| index.get(*name).copied()).collect();
+    let (methods, internal) = (indices_of_function_names(METHODS), indices_of_function_names(INTERNAL));
     let quantities_with_units = |names: &mut dyn Iterator<Item = &String>, units: &[String]| {
         let unit_of_quantity = |k: usize| units.get(k).cloned().unwrap_or_default();
         names
@@ -398,7 +403,7 @@ fn contacts_of_model(model: &Model<'_>) -> Vec<Contact> {
     model.contacts.iter().enumerate().map(contact_with_row_range).collect()
 }
 
-fn convert_requirement(model: &Model<'_>, requirement: &mechanism::Requirement<'_>) -> Requirement {
+fn convert_requirement(model: &Model<'_>, requirement: &mechanism::Requirement<'_>) -> ParameterRequirement {
     use mechanism::Rule as Known;
     let rule = match requirement.rule {
         Known::Finite => Rule::Finite,
@@ -412,7 +417,7 @@ fn convert_requirement(model: &Model<'_>, requirement: &mechanism::Requirement<'
         Known::Order => Rule::Order,
         Known::Inertia => Rule::Inertia,
     };
-    Requirement {
+    ParameterRequirement {
         rule,
         figure: requirement.figure.clone(),
         parameters: requirement.parameters.iter().map(|k| model.parameters[*k].clone()).collect(),

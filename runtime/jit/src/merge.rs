@@ -15,7 +15,7 @@ pub(crate) struct ProgramMerger {
 
 impl ProgramMerger {
     /// Appends the instructions of a program; returns the outputs of that program.
-    pub fn append(&mut self, program: &Program) -> Vec<Operand> {
+    pub fn append_program(&mut self, program: &Program) -> Vec<Operand> {
         let mut values: Vec<Operand> = Vec::with_capacity(program.instructions.len());
         for op in &program.instructions {
             let op = op.map_operands(|operand| self.renamed_operand(operand, &values));
@@ -73,9 +73,9 @@ mod tests {
         let twice = lower(&[x.expr(&graph) * graph.num(2.0)]);
         let sine = lower(&[y.expr(&graph).sin()]);
         let mut merged = ProgramMerger::default();
-        let outputs = merged.append(&twice);
+        let outputs = merged.append_program(&twice);
         merged.bind_symbol(y.symbol(), outputs[0]);
-        let outputs = merged.append(&sine);
+        let outputs = merged.append_program(&sine);
         let program = merged.finish(outputs);
         let found = program.interpret_program(&|symbol| if symbol == x.symbol() { 0.3 } else { f64::NAN });
         assert_eq!(found, [0.6_f64.sin()]);

@@ -61,7 +61,7 @@ impl Shared {
     }
 
     /// Replaces the placeholder numbers in backquotes of a message by names of the mechanism.
-    pub(crate) fn with_names(&self, message: &str) -> String {
+    pub(crate) fn replace_placeholders_by_names(&self, message: &str) -> String {
         let mut parts = message.split('`');
         let mut text = parts.next().unwrap_or_default().to_string();
         for part in parts {

@@ -123,7 +123,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
     }
 
     /// Returns the number of velocities, and the number of velocities and first-order states together.
-    fn velocity_and_total_counts(&self) -> [usize; 2] {
+    fn velocity_and_extended_velocity_counts(&self) -> [usize; 2] {
         let robot = self.robot();
         [robot.nv(), robot.nv() + robot.shared.states.len()]
     }
@@ -141,7 +141,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
     }
 
     fn state_with_velocity<'a>(&self, t: f64, q: &'a SVector<f64, NQ>, v: &'a SVector<f64, NV>) -> State<'a> {
-        let [n, all] = self.velocity_and_total_counts();
+        let [n, all] = self.velocity_and_extended_velocity_counts();
         State { v: self.velocity_entries(v), x: &v.as_slice()[n..all], ..self.state_without_velocity(t, q) }
     }
 
@@ -174,7 +174,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
 
     /// Returns a matrix whose first rows and columns are the results of a function, and whose other entries
     /// are those of `all`.
-    fn fill_matrix<const N: usize, const M: usize>(
+    fn matrix_with_results<const N: usize, const M: usize>(
         &self,
         f: InternalFunction,
         state: State<'_>,
@@ -208,7 +208,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
 
     /// Adds the rates of the first-order states without inputs, times a factor, to the entries behind the
     /// velocities.
-    fn add_first_order_state_rates(&self, state: State<'_>, factor: f64, to: &mut SVector<f64, NV>) {
+    fn add_state_rates_without_inputs(&self, state: State<'_>, factor: f64, to: &mut SVector<f64, NV>) {
         if !self.robot().shared.states.is_empty() {
             let u = SVector::<f64, NU>::zeros();
             self.add_state_rates(State { u: self.input_entries(&u), ..state }, factor, to);
@@ -232,7 +232,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Hooks<
 {
     #[inline]
     fn features(&self) -> Features {
-        let (robot, [_, velocities]) = (self.robot(), self.velocity_and_total_counts());
+        let (robot, [_, velocities]) = (self.robot(), self.velocity_and_extended_velocity_counts());
         let shared = &robot.shared;
         Features {
             constrained: !shared.constraints.names.is_empty(),
@@ -376,7 +376,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Mechan
     }
 
     fn integrate(&self, q: &SVector<f64, NQ>, dv: &SVector<f64, NV>) -> SVector<f64, NQ> {
-        let (nq, [_, nv]) = (self.robot().nq(), self.velocity_and_total_counts());
+        let (nq, [_, nv]) = (self.robot().nq(), self.velocity_and_extended_velocity_counts());
         let mut all = *q;
         for (to, by) in all.iter_mut().skip(nq).zip(dv.iter().skip(nv)) {
             *to += by;
@@ -396,7 +396,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Mechan
     }
 
     fn difference(&self, from: &SVector<f64, NQ>, to: &SVector<f64, NQ>) -> SVector<f64, NV> {
-        let (nq, [n, nv]) = (self.robot().nq(), self.velocity_and_total_counts());
+        let (nq, [n, nv]) = (self.robot().nq(), self.velocity_and_extended_velocity_counts());
         let mut all = SVector::<f64, NV>::zeros();
         for (entry, (to, from)) in all.iter_mut().skip(nv).zip(to.iter().zip(from).skip(nq)) {
             *entry = to - from;
@@ -442,7 +442,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Mechan
 
     fn mass_matrix(&self, t: f64, q: &SVector<f64, NQ>) -> SMatrix<f64, NV, NV> {
         let n = self.robot().nv();
-        self.fill_matrix(
+        self.matrix_with_results(
             InternalFunction::MassMatrix,
             self.state_without_velocity(t, q),
             (n, n),
@@ -458,7 +458,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Mechan
             self.robot().nv(),
             SVector::zeros(),
         );
-        self.add_first_order_state_rates(state, -1.0, &mut all);
+        self.add_state_rates_without_inputs(state, -1.0, &mut all);
         all
     }
 
@@ -472,7 +472,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Mechan
         let state = State { a: self.velocity_entries(a), ..self.state_with_velocity(t, q, v) };
         let mut all =
             self.vector_with_results(InternalFunction::InverseDynamics, state, self.robot().nv(), *a);
-        self.add_first_order_state_rates(state, -1.0, &mut all);
+        self.add_state_rates_without_inputs(state, -1.0, &mut all);
         all
     }
 
@@ -489,7 +489,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Mechan
         let state = State { tau: self.velocity_entries(tau), ..self.state_with_velocity(t, q, v) };
         let mut all =
             self.vector_with_results(InternalFunction::ForwardDynamics, state, self.robot().nv(), *tau);
-        self.add_first_order_state_rates(state, 1.0, &mut all);
+        self.add_state_rates_without_inputs(state, 1.0, &mut all);
         all
     }
 
@@ -521,13 +521,14 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Mechan
         all = self.vector_with_results(InternalFunction::GeneralizedForces, state, self.robot().nv(), all);
         if !self.robot().shared.states.is_empty() {
             self.add_state_rates(state, 1.0, &mut all);
-            self.add_first_order_state_rates(state, -1.0, &mut all);
+            self.add_state_rates_without_inputs(state, -1.0, &mut all);
         }
         all
     }
 
     fn kinetic_energy(&self, t: f64, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> f64 {
-        let further: f64 = v.iter().skip(self.velocity_and_total_counts()[1]).map(|v| 0.5 * v * v).sum();
+        let further: f64 =
+            v.iter().skip(self.velocity_and_extended_velocity_counts()[1]).map(|v| 0.5 * v * v).sum();
         let mut energy = [f64::NAN];
         self.call_function(InternalFunction::KineticEnergy, self.state_with_velocity(t, q, v), &mut energy);
         energy[0] + further
@@ -556,7 +557,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Mechan
             self.robot().nv(),
             SVector::zeros(),
         );
-        self.add_first_order_state_rates(state, 1.0, &mut all);
+        self.add_state_rates_without_inputs(state, 1.0, &mut all);
         all
     }
 }

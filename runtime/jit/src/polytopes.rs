@@ -4,7 +4,7 @@ use crate::layout::Layout;
 use crate::routine::Values;
 use crate::shared::Shared;
 use linkwork::__private as runtime;
-use linkwork_compiler::catalogue::{Argument, Called};
+use linkwork_compiler::catalogue::{Argument, CalledFunction};
 use linkwork_compiler::lower::Program;
 use linkwork_compiler::mechanism::{Model, PAIR_POSE, Polytope, Quantity};
 
@@ -46,7 +46,7 @@ impl Polytopes {
                 vertices: &shape.vertices,
                 faces: &faces[k],
                 edges: &edges[k],
-                size: shape.size(),
+                size: shape.half_sum_of_lengths(),
                 radius: shape.radius,
             });
             let pair = runtime::PolytopePair { first, second, points: *points };
@@ -75,13 +75,21 @@ fn borrowed_edges(shape: &Polytope) -> Vec<runtime::PolytopeEdge> {
 
 /// Whether a program takes features of polytopes as inputs.
 pub(crate) fn takes_features(program: &Program) -> bool {
-    let features = Argument::Called(Called::ContactFeatures);
-    program.used_symbols().into_iter().any(|symbol| features.index(Quantity::from_symbol(symbol)).is_some())
+    let features = Argument::Called(CalledFunction::ContactFeatures);
+    program
+        .used_symbols()
+        .into_iter()
+        .any(|symbol| features.index_of_quantity(Quantity::from_symbol(symbol)).is_some())
 }
 
 impl Shared {
     /// Calls `f` with the inputs of a function, to which the features of polytopes are added.
-    pub fn with_features(&self, values: Values<'_>, arguments: &[Argument], f: impl FnOnce(Values<'_>)) {
+    pub fn call_with_polytope_features(
+        &self,
+        values: Values<'_>,
+        arguments: &[Argument],
+        f: impl FnOnce(Values<'_>),
+    ) {
         let poses = self.index.get(POSES).map(|function| {
             let mut poses = vec![0.0; self.entries[*function].length];
             self.call(*function, values, arguments, &[], &mut poses, &mut []);

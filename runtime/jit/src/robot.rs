@@ -362,16 +362,16 @@ impl Robot {
     pub fn limits(&self) -> Result<Vec<Limit>, Error> {
         let Some(index) = self.shared.index.get("limits") else { return Ok(Vec::new()) };
         let mut values = self.call_function_at_state(*index, State::default())?.into_iter();
-        let mut bound = |present: bool, default: f64| match present {
+        let mut next_bound_or_default = |present: bool, default: f64| match present {
             true => values.next().unwrap_or(default),
             false => default,
         };
         let limits = self.shared.limits.iter().map(|(index, [lower, upper, velocity, effort])| Limit {
             index: *index,
-            lower: bound(*lower, f64::NEG_INFINITY),
-            upper: bound(*upper, f64::INFINITY),
-            velocity: bound(*velocity, f64::INFINITY),
-            effort: bound(*effort, f64::INFINITY),
+            lower: next_bound_or_default(*lower, f64::NEG_INFINITY),
+            upper: next_bound_or_default(*upper, f64::INFINITY),
+            velocity: next_bound_or_default(*velocity, f64::INFINITY),
+            effort: next_bound_or_default(*effort, f64::INFINITY),
         });
         Ok(limits.collect())
     }
@@ -468,12 +468,12 @@ impl Robot {
         {
             return Ok(());
         }
-        self.call_checked_entry(entry, parameters, arguments, out)
+        self.check_and_run_entry(entry, parameters, arguments, out)
     }
 
     /// Evaluates a function for one set of arguments, after a check of their lengths.
     #[inline(never)]
-    fn call_checked_entry(
+    fn check_and_run_entry(
         &self,
         entry: &Entry,
         parameters: &[f64],

@@ -61,7 +61,7 @@ impl Robot {
             true => Method::Rk4(h),
             false => Method::TimeStepping(h),
         };
-        let mut controller = |t: f64, _: &[f64], _: &[f64], u: &mut [f64]| {
+        let mut controller_from_given_inputs = |t: f64, _: &[f64], _: &[f64], u: &mut [f64]| {
             let step = ((t - start) / h).round().max(0.0) as usize;
             let row = inputs.chunks_exact(nu.max(1)).nth(step.min(steps.saturating_sub(1)));
             match row {
@@ -71,7 +71,7 @@ impl Robot {
             Ok(())
         };
         let inputs = match nu > 0 && !inputs.is_empty() {
-            true => Inputs::Sampled(h, &mut controller),
+            true => Inputs::Sampled(h, &mut controller_from_given_inputs),
             false => Inputs::Zero,
         };
         let (first_q, first_v) = (q[..nq].to_vec(), v[..nv].to_vec());

@@ -75,13 +75,13 @@ impl Routine {
             Some(code) if !values.interpreted => {
                 code.call(values.parameters, values.arguments, values.tables, results, more);
             }
-            _ => self.compile_or_interpret(values, results, more),
+            _ => self.compile_and_run_or_interpret(values, results, more),
         }
     }
 
     /// Evaluates a program that is interpreted or that has no machine code yet.
     #[cold]
-    fn compile_or_interpret(&self, values: Values<'_>, results: &mut [f64], more: &mut [f64]) {
+    fn compile_and_run_or_interpret(&self, values: Values<'_>, results: &mut [f64], more: &mut [f64]) {
         match !values.interpreted && self.prepare() {
             true => self.run(values, results, more),
             false => self.interpret_program(values, results, more),
@@ -91,7 +91,7 @@ impl Routine {
     fn interpret_program(&self, values: Values<'_>, results: &mut [f64], more: &mut [f64]) {
         let Some(program) = self.program.get() else { return };
         let value_of_symbol = |symbol| {
-            let value = self.layout.locate(symbol).and_then(|(slot, index)| match slot {
+            let value = self.layout.locate_symbol(symbol).and_then(|(slot, index)| match slot {
                 0 => values.parameters.get(index),
                 _ => values.arguments.get(slot - 1)?.get(index),
             });

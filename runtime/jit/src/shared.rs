@@ -21,7 +21,7 @@ pub(crate) struct Sizes {
 impl Sizes {
     /// Returns the number of entries that an argument has for a mechanism of these sizes.
     pub fn length(&self, argument: Argument) -> usize {
-        argument.length([self.nq, self.nv, self.nu])
+        argument.argument_length([self.nq, self.nv, self.nu])
     }
 }
 
@@ -35,7 +35,7 @@ pub struct Quantity {
 }
 
 /// Condition that the parameters of a mechanism must satisfy.
-pub(crate) struct Requirement {
+pub(crate) struct ParameterRequirement {
     pub rule: linkwork::__private::Rule,
     pub figure: String,
     pub parameters: Vec<String>,
@@ -101,7 +101,7 @@ pub(crate) struct Shared {
     pub tables: Vec<(String, usize)>,
     /// For each limit, the index of its velocity in `v`, and which of the four bounds are present.
     pub limits: Vec<(usize, [bool; 4])>,
-    pub requirements: Vec<Requirement>,
+    pub requirements: Vec<ParameterRequirement>,
     pub equations: String,
     pub time: bool,
     /// Whether the mechanism has no inertia, only kinematics.

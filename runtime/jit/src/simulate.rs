@@ -7,7 +7,7 @@ use linkwork::simulate::Overlaps;
 mod driver;
 mod method;
 
-use driver::{Driver, InputSource, Moving, Settings};
+use driver::{Driver, Settings, SimulationVisitor, StateIndependentInputs};
 pub use method::Method;
 use method::STEP;
 
@@ -281,11 +281,13 @@ impl<'a, 'i> Simulation<'a, 'i> {
             )));
         }
         let (inputs, controller) = match self.inputs {
-            Inputs::Zero => (InputSource::Zero, None),
-            Inputs::Constant(u) => (InputSource::Constant(u), None),
-            Inputs::Samples { times, values } => (InputSource::Samples(times, values), None),
-            Inputs::Function(function) => (InputSource::Zero, Some((None, function))),
-            Inputs::Sampled(period, function) => (InputSource::Zero, Some((Some(period), function))),
+            Inputs::Zero => (StateIndependentInputs::Zero, None),
+            Inputs::Constant(u) => (StateIndependentInputs::Constant(u), None),
+            Inputs::Samples { times, values } => (StateIndependentInputs::Samples(times, values), None),
+            Inputs::Function(function) => (StateIndependentInputs::Zero, Some((None, function))),
+            Inputs::Sampled(period, function) => {
+                (StateIndependentInputs::Zero, Some((Some(period), function)))
+            }
         };
         let settings = Settings {
             robot,
@@ -297,14 +299,14 @@ impl<'a, 'i> Simulation<'a, 'i> {
             inputs,
         };
         let mut driver = Driver { settings, controller, sink: sample, has_begun: false, stiff_from: None };
-        let go = || {
-            let moving = Moving { driver: &mut driver, q: &q, v: &v };
+        let simulate_padded_robot = || {
+            let moving = SimulationVisitor { driver: &mut driver, q: &q, v: &v };
             match is_contact_method && with_contacts {
                 true => robot.visit_contacts(moving)?,
                 false => robot.visit_padded_robot(moving)?,
             }
         };
-        robot.with_stack(go)?;
+        robot.run_with_sufficient_stack(simulate_padded_robot)?;
         Ok(driver.stiff_from)
     }
 }

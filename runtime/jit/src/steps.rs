@@ -256,12 +256,12 @@ impl Stepper {
             self.robot.set_time(t + c);
             let state = State { q: &stage.q, v: &stage.v, u, ..State::default() };
             self.robot.call_with_state_into(linearize, state, &mut system)?;
-            let entry_of_system = |i: usize, j: usize| system[2 * n * j + n + i];
-            let by_q = DMatrix::from_fn(n, n, entry_of_system);
-            let by_v = DMatrix::from_fn(n, n, |i, j| entry_of_system(i, n + j));
+            let acceleration_jacobian_entry = |i: usize, j: usize| system[2 * n * j + n + i];
+            let by_q = DMatrix::from_fn(n, n, acceleration_jacobian_entry);
+            let by_v = DMatrix::from_fn(n, n, |i, j| acceleration_jacobian_entry(i, n + j));
             let mut acceleration =
                 motion.multiplied_by_matrix(&by_q).plus_scaled(1.0, &v.multiplied_by_matrix(&by_v));
-            acceleration.by_u += DMatrix::from_fn(n, m, |i, j| entry_of_system(i, 2 * n + j));
+            acceleration.by_u += DMatrix::from_fn(n, m, |i, j| acceleration_jacobian_entry(i, 2 * n + j));
             stages.push([rate, acceleration]);
         }
         let weighted_sum_of_stages = |which: usize| {

@@ -74,7 +74,7 @@ impl WebModule {
         Ok(())
     }
 
-    fn add_entry(&mut self, robot: &Robot, entry: &Entry) -> Result<(), String> {
+    fn add_program_of_entry(&mut self, robot: &Robot, entry: &Entry) -> Result<(), String> {
         match &entry.plan {
             ResultAssembly::Program(routine) => match routine.program() {
                 Some(program) => self.add(robot, &entry.name, program, &entry.arguments),
@@ -138,7 +138,7 @@ impl Robot {
         indices.dedup();
         let mut written = WebModule::default();
         for index in indices {
-            written.add_entry(self, &shared.entries[index])?;
+            written.add_program_of_entry(self, &shared.entries[index])?;
         }
         let time = shared.time.then_some(Argument::T);
         let arguments: Vec<Argument> = time.into_iter().chain([Argument::Q]).collect();
@@ -150,7 +150,7 @@ impl Robot {
     /// Returns the structure of the mechanism for a web page, as names and values of JSON fields.
     fn web_structure(&self) -> Vec<(&'static str, String)> {
         let shared = &self.shared;
-        let encode_quantities = |list: &[Quantity]| {
+        let quantities_as_json = |list: &[Quantity]| {
             json_list(
                 list.iter().map(|one| format!("[{},{}]", json_string(&one.name), json_string(&one.unit))),
             )
@@ -177,11 +177,11 @@ impl Robot {
         let states_of = shared.states.iter().map(|state| &shared.parameters[state.parameter].name);
         vec![
             ("name", json_string(&shared.name)),
-            ("configuration", encode_quantities(&shared.configuration)),
-            ("velocities", encode_quantities(&shared.velocities)),
-            ("inputs", encode_quantities(&shared.inputs)),
-            ("parameters", encode_quantities(&shared.parameters)),
-            ("outputs", encode_quantities(self.outputs())),
+            ("configuration", quantities_as_json(&shared.configuration)),
+            ("velocities", quantities_as_json(&shared.velocities)),
+            ("inputs", quantities_as_json(&shared.inputs)),
+            ("parameters", quantities_as_json(&shared.parameters)),
+            ("outputs", quantities_as_json(self.outputs())),
             ("frames", json_list(shared.frames.names.iter().map(|name| json_string(name)))),
             ("charts", charts),
             ("states", states),

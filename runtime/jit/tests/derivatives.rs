@@ -21,7 +21,7 @@ macro_rules! declared_twice {
 
 declared_twice! { BLOCK:
     #[mechanism(gravity = -9.81 * z, derivatives)]
-    struct Block {
+    struct ContactBlock {
         #[body(mass = 2, com = 0.05 * x, inertia = cuboid(2, 0.3, 0.2, 0.1))]
         block: Body,
         #[joint(ground -> block)]
@@ -91,7 +91,7 @@ fn padded_vector<const N: usize>(x: &[f64]) -> SVector<f64, N> {
 }
 
 /// Compares a matrix with the first rows and columns of a padded one.
-fn assert_block<const R: usize, const C: usize, const N: usize, const M: usize>(
+fn assert_leading_block<const R: usize, const C: usize, const N: usize, const M: usize>(
     padded: &linkwork::nalgebra::SMatrix<f64, N, M>,
     expected: &linkwork::nalgebra::SMatrix<f64, R, C>,
     what: &str,
@@ -116,21 +116,21 @@ fn derivatives_of_contacts_equal_compiled_ones() -> Result<(), Failure> {
             .into_iter()
             .enumerate()
     {
-        let q = Block {}.integrate(&Block {}.neutral(), &(sample(seed) * 0.3));
+        let q = ContactBlock {}.integrate(&ContactBlock {}.neutral(), &(sample(seed) * 0.3));
         let (v, tau) = (sample(seed + 1), sample::<6>(seed + 2) * 5.0);
-        let own = contact::forward_dynamics_derivatives(&Block {}, 0.0, &q, &v, &tau, &touches)?;
+        let own = contact::forward_dynamics_derivatives(&ContactBlock {}, 0.0, &q, &v, &tau, &touches)?;
         let [first, second] = touches;
         let touches = [first, second, Touch::Open, Touch::Open];
         let (q, v, tau) =
             (padded_vector(q.as_slice()), padded_vector(v.as_slice()), padded_vector(tau.as_slice()));
         let found = contact::forward_dynamics_derivatives(&m, 0.0, &q, &v, &tau, &touches)?;
-        assert_block(&found.a, &own.a, "accelerations");
-        assert_block(&found.forces, &own.forces, "forces");
+        assert_leading_block(&found.a, &own.a, "accelerations");
+        assert_leading_block(&found.forces, &own.forces, "forces");
         for (found, own) in [(found.by_q, own.by_q), (found.by_v, own.by_v), (found.by_tau, own.by_tau)] {
-            assert_block(&found, &own, "derivatives of accelerations");
+            assert_leading_block(&found, &own, "derivatives of accelerations");
         }
         for (found, own) in [(found.forces_by_q, own.forces_by_q), (found.forces_by_tau, own.forces_by_tau)] {
-            assert_block(&found, &own, "derivatives of forces");
+            assert_leading_block(&found, &own, "derivatives of forces");
         }
     }
     Ok(())
@@ -141,23 +141,23 @@ fn derivatives_of_contacts_equal_compiled_ones() -> Result<(), Failure> {
 fn jacobians_of_steps_with_contacts_are_differences() -> Result<(), Failure> {
     let m = block_robot()?.padded_contacts::<7, 6, 1, 2, 6>()?;
     let method = TimeStepping::step(1e-2);
-    let mut q = Block {}.neutral();
+    let mut q = ContactBlock {}.neutral();
     q[2] = 1e-4;
     let (v, u) = (SVector::from([0.5, 0.2, -1.0, 0.1, -0.2, 0.3]), SVector::from([0.4]));
-    let own = discrete::transition(&Block {}, &method, 0.0, &q, &v, &u)?;
+    let own = discrete::transition(&ContactBlock {}, &method, 0.0, &q, &v, &u)?;
     let found = discrete::transition(&m, &method, 0.0, &q, &v, &u)?;
-    assert_block(&found.v, &own.v, "velocity");
+    assert_leading_block(&found.v, &own.v, "velocity");
     for (found, own) in [(found.v_by_q, own.v_by_q), (found.v_by_v, own.v_by_v), (found.q_by_v, own.q_by_v)] {
-        assert_block(&found, &own, "Jacobian");
+        assert_leading_block(&found, &own, "Jacobian");
     }
     let e = 1e-6;
     for j in 0..6 {
-        let velocity = |by: f64| -> Result<_, Failure> {
+        let velocity_after_step = |by: f64| -> Result<_, Failure> {
             let mut v = v;
             v[j] += by;
             Ok(discrete::step(&m, &method, 0.0, &q, &v, &u)?.1)
         };
-        let slope = (velocity(e)? - velocity(-e)?) / (2.0 * e);
+        let slope = (velocity_after_step(e)? - velocity_after_step(-e)?) / (2.0 * e);
         assert!((slope - found.v_by_v.column(j)).amax() < 1e-5, "column {j}: {slope}");
     }
     Ok(())
@@ -179,7 +179,7 @@ fn linear_systems_in_independent_coordinates_equal_compiled_ones() -> Result<(),
         assert!(difference(found.b.as_slice(), own.b.as_slice()) < 1e-8, "{}{}", found.b, own.b);
     }
     // The crank's acceleration at crank angles and velocities nearby, along the constraints.
-    let acceleration = |angle: f64, velocity: f64| -> Result<f64, Failure> {
+    let crank_acceleration = |angle: f64, velocity: f64| -> Result<f64, Failure> {
         let q = robot.assemble(&[q[0] + angle, q[1], q[2]], &[0])?;
         let v = robot.complete_velocity(q.as_slice(), &[v[0] + velocity, 0.0, 0.0], &[0])?;
         let tau = robot.generalized_forces(q.as_slice(), v.as_slice(), &[0.3])?;
@@ -188,7 +188,8 @@ fn linear_systems_in_independent_coordinates_equal_compiled_ones() -> Result<(),
     let found = robot.linearize_independent(q.as_slice(), v.as_slice(), &[0.3], &[0])?;
     let e = 1e-5;
     for (column, [angle, velocity]) in [(0, [e, 0.0]), (1, [0.0, e])] {
-        let slope = (acceleration(angle, velocity)? - acceleration(-angle, -velocity)?) / (2.0 * e);
+        let slope =
+            (crank_acceleration(angle, velocity)? - crank_acceleration(-angle, -velocity)?) / (2.0 * e);
         let entry = found.a[(1, column)];
         assert!((slope - entry).abs() < 1e-5 * slope.abs().max(1.0), "{entry} instead of {slope}");
     }
@@ -246,24 +247,26 @@ where
     let expected = [expected.0, expected.1, expected.2, expected.3];
     for (block, expected) in found.chunks(NV * NV).zip(expected) {
         let found = linkwork::nalgebra::SMatrix::<f64, NV, NV>::from_column_slice(block);
-        assert_block(&found, &expected, robot.name());
+        assert_leading_block(&found, &expected, robot.name());
     }
     let m = robot.padded::<6, 5, 2>()?;
     let [q, v, tau, lambda] = arguments;
     let (q, v, tau, lambda) = (padded_vector(q), padded_vector(v), padded_vector(tau), padded_vector(lambda));
     let padded = m.forward_dynamics_second_derivatives(0.0, &q, &v, &tau, &lambda);
-    assert_block(&padded.0, &expected[0], robot.name());
-    assert_block(&padded.1, &expected[1], robot.name());
+    assert_leading_block(&padded.0, &expected[0], robot.name());
+    assert_leading_block(&padded.1, &expected[1], robot.name());
     // The motion under inputs, whose forces act along a joint.
     let u = sample::<2>(7);
     let motion = at(&m, 0.0).second_order_motion(&q, &v, &u, &lambda);
-    let acceleration = |change: f64| {
+    let contracted_acceleration = |change: f64| {
         let mut v = v;
         v[0] += change;
         m.forward_dynamics(0.0, &q, &v, &m.generalized_forces(0.0, &q, &v, &u)).dot(&lambda)
     };
     let e = 1e-3;
-    let difference = (acceleration(e) - 2.0 * acceleration(0.0) + acceleration(-e)) / (e * e);
+    let difference = (contracted_acceleration(e) - 2.0 * contracted_acceleration(0.0)
+        + contracted_acceleration(-e))
+        / (e * e);
     assert!((difference - motion.2[(0, 0)]).abs() < 1e-5, "{difference} instead of {}", motion.2[(0, 0)]);
     Ok(())
 }
@@ -290,30 +293,37 @@ fn second_derivatives_of_accelerations_are_differences() -> Result<(), Error> {
     let found = crane.evaluate(&f, &[&q, &v, &tau, &lambda])?;
     let first = crane.function("forward_dynamics_derivatives")?;
     // λᵀ ∂v̇/∂q, λᵀ ∂v̇/∂v, λᵀ ∂v̇/∂τ.
-    let contracted = |q: [f64; N], v: [f64; N]| -> Result<Vec<f64>, Error> {
+    let contracted_acceleration_derivatives = |q: [f64; N], v: [f64; N]| -> Result<Vec<f64>, Error> {
         let all = crane.evaluate(&first, &[&q, &v, &tau])?;
         Ok(all.chunks(N).map(|column| column.iter().zip(&lambda).map(|(x, l)| x * l).sum()).collect())
     };
     let e = 1e-6;
     for j in 0..N {
-        let add_to_entry = |mut x: [f64; N], change: f64| {
+        let with_displaced_entry = |mut x: [f64; N], change: f64| {
             x[j] += change;
             x
         };
-        let slope = |ahead: Vec<f64>, behind: Vec<f64>| -> Vec<f64> {
+        let central_differences = |ahead: Vec<f64>, behind: Vec<f64>| -> Vec<f64> {
             ahead.iter().zip(behind).map(|(a, b)| (a - b) / (2.0 * e)).collect()
         };
-        let by_q = slope(contracted(add_to_entry(q, e), v)?, contracted(add_to_entry(q, -e), v)?);
-        let by_v = slope(contracted(q, add_to_entry(v, e))?, contracted(q, add_to_entry(v, -e))?);
+        let by_q = central_differences(
+            contracted_acceleration_derivatives(with_displaced_entry(q, e), v)?,
+            contracted_acceleration_derivatives(with_displaced_entry(q, -e), v)?,
+        );
+        let by_v = central_differences(
+            contracted_acceleration_derivatives(q, with_displaced_entry(v, e))?,
+            contracted_acceleration_derivatives(q, with_displaced_entry(v, -e))?,
+        );
         for i in 0..N {
             // Blocks are ∂²/∂q∂q, ∂²/∂q∂v, ∂²/∂v∂v, ∂²/∂q∂τ, with rows for `q`.
-            let entry = |block: usize, row: usize, column: usize| found[block * N * N + column * N + row];
+            let second_derivative_entry =
+                |block: usize, row: usize, column: usize| found[block * N * N + column * N + row];
             for (found, expected) in [
-                (entry(0, i, j), by_q[i]),
-                (entry(1, i, j), by_v[i]),
-                (entry(1, j, i), by_q[N + i]),
-                (entry(2, i, j), by_v[N + i]),
-                (entry(3, j, i), by_q[2 * N + i]),
+                (second_derivative_entry(0, i, j), by_q[i]),
+                (second_derivative_entry(1, i, j), by_v[i]),
+                (second_derivative_entry(1, j, i), by_q[N + i]),
+                (second_derivative_entry(2, i, j), by_v[N + i]),
+                (second_derivative_entry(3, j, i), by_q[2 * N + i]),
             ] {
                 assert!((found - expected).abs() < 1e-7, "({i}, {j}): {found} instead of {expected}");
             }

@@ -106,9 +106,13 @@ fn declared_pairs_slide_with_their_own_friction() -> Result<(), Error> {
     let tilt = 20.0_f64.to_radians();
     let (sine, cosine) = tilt.sin_cos();
     let height = 0.15;
-    let start = |y: f64| ([height * sine, y, height * cosine], tilt, [0.0; 3]);
+    let initial_state_on_slope = |y: f64| ([height * sine, y, height * cosine], tilt, [0.0; 3]);
     let time = 0.5;
-    let end = end_of_motion(&robot, &[start(-0.2), start(0.2), ([-3.0, 0.0, 1.0], 0.0, [0.0; 3])], time)?;
+    let end = end_of_motion(
+        &robot,
+        &[initial_state_on_slope(-0.2), initial_state_on_slope(0.2), ([-3.0, 0.0, 1.0], 0.0, [0.0; 3])],
+        time,
+    )?;
     let path = 0.5 * G * (sine - 0.05 * cosine) * time * time;
     let slid = [height * sine + path * cosine, -0.2, height * cosine - path * sine];
     for (k, expected) in slid.into_iter().enumerate() {

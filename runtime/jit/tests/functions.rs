@@ -316,14 +316,14 @@ fn robots_begin_in_the_pose_of_their_file() -> Result<(), Error> {
              </worldbody></mujoco>"
         )
     };
-    let load = |test: &str, text: String| {
+    let load_from_temporary_file = |test: &str, text: String| {
         let path = std::env::temp_dir().join(format!("linkwork-pose-{test}-{}.xml", std::process::id()));
         std::fs::write(&path, text).expect("a temporary file");
         let robot = Loader::file(&path).load();
         std::fs::remove_file(&path).expect("the file is there");
         robot
     };
-    let moving = load(
+    let moving = load_from_temporary_file(
         "moving",
         scene([
             "<freejoint/>",
@@ -334,7 +334,7 @@ fn robots_begin_in_the_pose_of_their_file() -> Result<(), Error> {
     let q = moving.initial_configuration()?;
     // The frame rotates the position of the crate by a right angle about z.
     assert!([0.2, 0.3, 1.5].iter().zip(&q).all(|(expected, found)| (expected - found).abs() < 1e-15), "{q}");
-    let fixed = load("fixed", scene([""; 3]))?;
+    let fixed = load_from_temporary_file("fixed", scene([""; 3]))?;
     for frame in ["crate", "ball", "lid", "block", "origin"] {
         let there = fixed.frame_placement(frame, &[])?;
         let here = moving.frame_placement(frame, q.as_slice())?;

@@ -79,16 +79,16 @@ fn memory_of_replaced_tables_is_returned() -> Result<(), Box<dyn std::error::Err
     )
     .load()?;
     let axis: Vec<f64> = (0..POINTS).map(|k| k as f64).collect();
-    let mut set_and_call = |stiffness: f64| -> Result<(), Box<dyn std::error::Error>> {
+    let mut set_table_and_call = |stiffness: f64| -> Result<(), Box<dyn std::error::Error>> {
         let values: Vec<f64> = axis.iter().map(|x| stiffness * x).collect();
         robot.set_table("force", AnyTable::from_grid(&[&axis], &values)?)?;
         let found = robot.forward_dynamics(&[3.0], &[0.0], &[0.0])?[0];
         assert!((found + 1.5 * stiffness).abs() < 1e-12 * stiffness.max(1.0), "{found}");
         Ok(())
     };
-    (0..SETS / 4).try_for_each(|k| set_and_call(k as f64))?;
+    (0..SETS / 4).try_for_each(|k| set_table_and_call(k as f64))?;
     let Some(before) = resident_memory() else { return Ok(()) };
-    (0..SETS).try_for_each(|k| set_and_call(k as f64))?;
+    (0..SETS).try_for_each(|k| set_table_and_call(k as f64))?;
     let growth = resident_memory().unwrap_or(before).saturating_sub(before);
     // The values alone are 8 MB.
     assert!(growth < 500_000, "{growth} bytes more after {SETS} tables");

@@ -26,7 +26,7 @@ fn assert_close_entries(found: &[f64], expected: &[f64], what: &str) {
 const N: usize = 16;
 
 /// Compares projections and accelerations in states near a given configuration.
-fn compare_with_padded<M, const NQ: usize, const NV: usize, const NU: usize>(
+fn compare_loaded_and_padded_robot<M, const NQ: usize, const NV: usize, const NU: usize>(
     own: &M,
     near: [f64; NQ],
     robot: &Robot,
@@ -67,7 +67,8 @@ where
 
 macro_rules! agree {
     ($($type:ident $file:literal [$($near:expr),*] { $($name:ident: $value:expr),* })*) => {
-        $(compare_with_padded(&models::$type { $($name: $value),* }, [$($near),*], &load_mechanism($file, &[$((stringify!($name), $value)),*])?)?;)*
+        $(compare_loaded_and_padded_robot(&models::$type { $($name: $value),* }, [$($near),*],
+            &load_mechanism($file, &[$((stringify!($name), $value)),*])?)?;)*
     };
 }
 

@@ -43,26 +43,29 @@ fn second_derivatives_are_differences_of_first_derivatives() -> Result<(), Error
             x[j] += by;
             x
         };
-        let slope = |ahead: Vec<f64>, behind: Vec<f64>| -> Vec<f64> {
+        let central_differences = |ahead: Vec<f64>, behind: Vec<f64>| -> Vec<f64> {
             ahead.iter().zip(behind).map(|(a, b)| (a - b) / (2.0 * e)).collect()
         };
-        let by_q = slope(
+        let by_q = central_differences(
             contracted_torque_derivatives(&with_displaced_entry(q, e), &v, &a)?,
             contracted_torque_derivatives(&with_displaced_entry(q, -e), &v, &a)?,
         );
-        let by_v = slope(
+        let by_v = central_differences(
             contracted_torque_derivatives(&q, &with_displaced_entry(v, e), &a)?,
             contracted_torque_derivatives(&q, &with_displaced_entry(v, -e), &a)?,
         );
-        let by_a = slope(
+        let by_a = central_differences(
             contracted_torque_derivatives(&q, &v, &with_displaced_entry(a, e))?,
             contracted_torque_derivatives(&q, &v, &with_displaced_entry(a, -e))?,
         );
         for i in 0..N {
-            let entry = |block: usize| found[block * N * N + j * N + i];
-            for (found, expected) in
-                [(entry(0), by_q[i]), (entry(1), by_v[i]), (entry(2), by_v[N + i]), (entry(3), by_a[i])]
-            {
+            let second_derivative_entry = |block: usize| found[block * N * N + j * N + i];
+            for (found, expected) in [
+                (second_derivative_entry(0), by_q[i]),
+                (second_derivative_entry(1), by_v[i]),
+                (second_derivative_entry(2), by_v[N + i]),
+                (second_derivative_entry(3), by_a[i]),
+            ] {
                 assert!((found - expected).abs() < 1e-7, "({i}, {j}): {found} instead of {expected}");
             }
         }

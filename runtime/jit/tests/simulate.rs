@@ -288,32 +288,32 @@ fn inputs_are_followed_exactly() -> Result<(), Error> {
     let end = simulate_pushed_cart(&cart, Inputs::Samples { times: &times, values: &values })?;
     assert_close_entries(&[end.v[0], end.u[0]], &[1.0 + 0.0 + 1.0, 1.0], 1e-12);
     let mut calls = 0;
-    let mut staircase = |t: f64, _: &[f64], _: &[f64], u: &mut [f64]| {
+    let mut ramp_controller = |t: f64, _: &[f64], _: &[f64], u: &mut [f64]| {
         calls += 1;
         u[0] = t;
         Ok(())
     };
     assert_close_entries(
-        &simulate_pushed_cart(&cart, Inputs::Sampled(1.0, &mut staircase))?.v,
+        &simulate_pushed_cart(&cart, Inputs::Sampled(1.0, &mut ramp_controller))?.v,
         &[3.0],
         1e-12,
     );
     assert!((3..=4).contains(&calls));
-    let mut damper = |_: f64, _: &[f64], v: &[f64], u: &mut [f64]| {
+    let mut damping_controller = |_: f64, _: &[f64], v: &[f64], u: &mut [f64]| {
         u[0] = 1.0 - v[0];
         Ok(())
     };
     assert_close_entries(
-        &simulate_pushed_cart(&cart, Inputs::Function(&mut damper))?.v,
+        &simulate_pushed_cart(&cart, Inputs::Function(&mut damping_controller))?.v,
         &[1.0 - (-3.0_f64).exp()],
         1e-8,
     );
-    let mut fails = |t: f64, _: &[f64], _: &[f64], _: &mut [f64]| match t < 1.0 {
+    let mut failing_controller = |t: f64, _: &[f64], _: &[f64], _: &mut [f64]| match t < 1.0 {
         true => Ok(()),
         false => Err("no more".to_string()),
     };
     assert_eq!(
-        simulate_pushed_cart(&cart, Inputs::Function(&mut fails)).map(|_| ()),
+        simulate_pushed_cart(&cart, Inputs::Function(&mut failing_controller)).map(|_| ()),
         Err(Error::Value("no more".to_string()))
     );
     let wrong = simulate_pushed_cart(&cart, Inputs::Constant(&[1.0, 2.0]));

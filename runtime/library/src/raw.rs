@@ -47,7 +47,7 @@ unsafe fn numbers_from_pointer<'a, N>(from: *const N, length: usize) -> &'a [N] 
 ///
 /// `to` points to `length` numbers that are not accessed otherwise during the lifetime of the result, or
 /// `length` is zero.
-unsafe fn mutable_numbers<'a, N>(to: *mut N, length: usize) -> &'a mut [N] {
+unsafe fn mutable_numbers_from_pointer<'a, N>(to: *mut N, length: usize) -> &'a mut [N] {
     match length {
         0 => &mut [],
         // SAFETY: see the requirements of this function.
@@ -85,7 +85,8 @@ pub unsafe fn call<M: Library>(
             let given =
                 f.arguments.iter().zip(own).map(|(one, from)| numbers_from_pointer(*from, one * states));
             let own = numbers_from_pointer(results, f.results.len());
-            let wanted = f.results.iter().zip(own).map(|(one, to)| mutable_numbers(*to, one * states));
+            let wanted =
+                f.results.iter().zip(own).map(|(one, to)| mutable_numbers_from_pointer(*to, one * states));
             (
                 M::from_parameters(numbers_from_pointer(parameters, M::PARAMETERS)),
                 given.collect(),
@@ -115,7 +116,7 @@ pub unsafe fn check<M: Library>(parameters: *const M::Number) -> c_int {
 /// `to` points to an array of at least `from.len()` numbers.
 pub unsafe fn copy<N: Copy>(from: &[N], to: *mut N) {
     // SAFETY: guaranteed by the caller.
-    unsafe { mutable_numbers(to, from.len()) }.copy_from_slice(from);
+    unsafe { mutable_numbers_from_pointer(to, from.len()) }.copy_from_slice(from);
 }
 
 /// Controller in another language. Its arguments are the pointer that it was registered with, time,
@@ -174,7 +175,7 @@ pub unsafe fn simulate<M: Library>(
             settings,
             numbers_from_pointer(q, nq),
             numbers_from_pointer(v, nv),
-            mutable_numbers(samples, rows * width),
+            mutable_numbers_from_pointer(samples, rows * width),
             &mut *count,
             CStr::from_ptr(settings.method),
         )
@@ -183,14 +184,15 @@ pub unsafe fn simulate<M: Library>(
         let way = method_from_name(method, settings.setting)?;
         let zero = linkwork::nalgebra::zero::<M::Number>();
         let every = if settings.period > zero { Every::Period(settings.period) } else { Every::Evaluation };
-        let mut control = |t: M::Number, q: &[M::Number], v: &[M::Number], u: &mut [M::Number]| {
-            let Some(control) = settings.control else { return Ok(()) };
-            // SAFETY: guaranteed by the caller.
-            match unsafe { control(settings.user, t, q.as_ptr(), v.as_ptr(), u.as_mut_ptr()) } {
-                0 => Ok(()),
-                _ => Err(Failure::new("the controller ended the run")),
-            }
-        };
+        let mut call_foreign_controller =
+            |t: M::Number, q: &[M::Number], v: &[M::Number], u: &mut [M::Number]| {
+                let Some(control) = settings.control else { return Ok(()) };
+                // SAFETY: guaranteed by the caller.
+                match unsafe { control(settings.user, t, q.as_ptr(), v.as_ptr(), u.as_mut_ptr()) } {
+                    0 => Ok(()),
+                    _ => Err(Failure::new("the controller ended the run")),
+                }
+            };
         let mut motion = Motion {
             start: settings.start,
             q,
@@ -199,7 +201,7 @@ pub unsafe fn simulate<M: Library>(
             interval: settings.interval,
             way,
             every,
-            control: &mut control,
+            control: &mut call_foreign_controller,
             samples,
             count: 0,
         };
@@ -261,8 +263,8 @@ pub unsafe fn roll_out<M: Library>(
         let (m, q, v, inputs) = unsafe {
             (
                 M::from_parameters(numbers_from_pointer(parameters, M::PARAMETERS)),
-                mutable_numbers(q, rows * nq),
-                mutable_numbers(v, rows * nv),
+                mutable_numbers_from_pointer(q, rows * nq),
+                mutable_numbers_from_pointer(v, rows * nv),
                 numbers_from_pointer(inputs, length),
             )
         };

@@ -53,11 +53,11 @@ impl<M, const L: usize> Lanewise<'_, M, L> {
             cancelled: AtomicBool::new(false),
             count: part.count,
         };
-        self.divide_recursively(rollout, part, &control, &shared).rollout_result()
+        self.roll_out_halves_in_parallel(rollout, part, &control, &shared).rollout_result()
     }
 
     /// Splits the states into halves recursively, down to [`GRAIN`] groups.
-    fn divide_recursively<S, C, W, const NQ: usize, const NV: usize, const NU: usize>(
+    fn roll_out_halves_in_parallel<S, C, W, const NQ: usize, const NV: usize, const NU: usize>(
         &self,
         rollout: &Rollout<M::Scalar, S>,
         mut part: StateRange<'_, M::Scalar, NQ, NV>,
@@ -80,8 +80,8 @@ impl<M, const L: usize> Lanewise<'_, M, L> {
         if groups > GRAIN {
             let (front, back) = part.split_at_state(groups / 2 * L);
             let (front, back) = rayon::join(
-                || self.divide_recursively(rollout, front, control, shared),
-                || self.divide_recursively(rollout, back, control, shared),
+                || self.roll_out_halves_in_parallel(rollout, front, control, shared),
+                || self.roll_out_halves_in_parallel(rollout, back, control, shared),
             );
             return front.combine_tallies(back);
         }

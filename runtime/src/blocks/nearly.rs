@@ -61,15 +61,15 @@ impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
     /// Replaces a matrix `A` by the product `A D` with this matrix `D`.
     pub fn follow<const R: usize>(&self, a: &mut SMatrix<T, R, N>) {
         if self.end - self.first.min(self.end) > 8 {
-            self.post_multiply_with_storage::<R, N>(a)
+            self.right_multiply_with_storage::<R, N>(a)
         } else {
-            self.post_multiply_with_storage::<R, 8>(a)
+            self.right_multiply_with_storage::<R, 8>(a)
         }
     }
 
     /// Replaces a matrix `A` by the product `A D`, with storage for `C` columns of `D` that differ from the
     /// identity.
-    fn post_multiply_with_storage<const R: usize, const C: usize>(&self, a: &mut SMatrix<T, R, N>) {
+    fn right_multiply_with_storage<const R: usize, const C: usize>(&self, a: &mut SMatrix<T, R, N>) {
         let mut sums = zeros::<T, R, C>();
         let some = self.first..self.end;
         let from = a.data.0.get(some.clone()).unwrap_or(&[]);

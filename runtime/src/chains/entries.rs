@@ -20,19 +20,19 @@ impl<T: Real> Factors<T> {
     /// Reads the factors of the column of a lane.
     #[inline(always)]
     fn read(rows: &Rows<T, LINK_ROWS>, link: &LinkRows<T>, lane: usize) -> Self {
-        let entry = |k: usize| rows[k].0.get(lane).copied().unwrap_or(T::zero());
-        let axis = |k: usize| link[k].0.get(lane).copied().unwrap_or(T::zero());
+        let row_entry_in_lane = |k: usize| rows[k].0.get(lane).copied().unwrap_or(T::zero());
+        let link_entry_in_lane = |k: usize| link[k].0.get(lane).copied().unwrap_or(T::zero());
         let mut factors = Factors { wrenches: [[T::zero(); 6]; 2], changes: [[T::zero(); 9]; 2] };
         for k in 0..6 {
-            factors.wrenches[0][k] = entry(WRENCHES + k);
-            factors.wrenches[1][k] = entry(WRENCHES + 6 + k);
-            factors.changes[0][k] = entry(SECOND + k);
+            factors.wrenches[0][k] = row_entry_in_lane(WRENCHES + k);
+            factors.wrenches[1][k] = row_entry_in_lane(WRENCHES + 6 + k);
+            factors.changes[0][k] = row_entry_in_lane(SECOND + k);
         }
         for k in 0..3 {
-            factors.changes[0][6 + k] = entry(FIRST_ANGULAR + k);
-            factors.changes[1][k] = entry(RATE_LINEAR + k);
-            factors.changes[1][3 + k] = entry(RATE_ANGULAR + k);
-            factors.changes[1][6 + k] = axis(3 + k);
+            factors.changes[0][6 + k] = row_entry_in_lane(FIRST_ANGULAR + k);
+            factors.changes[1][k] = row_entry_in_lane(RATE_LINEAR + k);
+            factors.changes[1][3 + k] = row_entry_in_lane(RATE_ANGULAR + k);
+            factors.changes[1][6 + k] = link_entry_in_lane(3 + k);
         }
         factors
     }

@@ -88,7 +88,7 @@ impl<T: Real, const B: usize> Work<T, B> {
         let subspace = Spatials::<A, T>::read(link, 0);
         let (v, a) = (read::<A, T, 20>(link, RATES), read::<A, T, 20>(link, RATES + 1));
         // All degrees of freedom of a free link have the motion of its parent before, and its own after them.
-        let accumulate = |start: &Spatials<A, T>, own: &Spatials<A, T>| {
+        let own_and_parent_motions = |start: &Spatials<A, T>, own: &Spatials<A, T>| {
             let sums = own.prefix_sums();
             if free {
                 (start.plus(&Spatials::splat(&sums.last())), *start)
@@ -97,9 +97,10 @@ impl<T: Real, const B: usize> Work<T, B> {
                 (sums, sums.minus(own))
             }
         };
-        let (own, above) = accumulate(&twist, &subspace.scale(v));
+        let (own, above) = own_and_parent_motions(&twist, &subspace.scale(v));
         let first = above.cross_motion(&subspace);
-        let (own_change, above_change) = accumulate(&acceleration, &subspace.scale_add(a, &first.scale(v)));
+        let (own_change, above_change) =
+            own_and_parent_motions(&acceleration, &subspace.scale_add(a, &first.scale(v)));
         let second = above_change.cross_motion(&subspace).plus(&above.cross_motion(&first));
         if let (Some(ends), Some(links)) = (self.ends.get_mut(b), self.links.get_mut(b)) {
             *ends = [own.last(), own_change.last()];
@@ -139,7 +140,7 @@ impl<T: Real, const B: usize> Work<T, B> {
         let inertia = Inertias {
             mass: read::<A, T, SUMS>(sums, 0),
             moment: read_vectors::<A, T, SUMS>(sums, MOMENT),
-            tensor: symmetric(&six_rows(sums, TENSOR)),
+            tensor: symmetric(&read_six_rows(sums, TENSOR)),
         };
         write_vectors::<A, T, LINK_ROWS>(links, RATE_LINEAR, &rate.linear);
         write_vectors::<A, T, LINK_ROWS>(links, RATE_ANGULAR, &rate.angular);
@@ -166,8 +167,8 @@ struct VelocityForceDerivatives<A, T> {
 impl<A: Arithmetic, T: Real> VelocityForceDerivatives<A, T> {
     #[inline(always)]
     fn read(sums: &Rows<T, SUMS>) -> Self {
-        let column = |k: usize| read_vectors::<A, T, SUMS>(sums, MAP_MATRIX + 3 * k);
-        let k = transpose(&[column(0), column(1), column(2)]);
+        let map_matrix_column = |k: usize| read_vectors::<A, T, SUMS>(sums, MAP_MATRIX + 3 * k);
+        let k = transpose(&[map_matrix_column(0), map_matrix_column(1), map_matrix_column(2)]);
         let matrix = [
             [k[1][1] + k[2][2], -k[0][1], -k[0][2]],
             [-k[1][0], k[2][2] + k[0][0], -k[1][2]],
@@ -189,7 +190,7 @@ impl<A: Arithmetic, T: Real> VelocityForceDerivatives<A, T> {
 }
 
 #[inline(always)]
-fn six_rows<A: Arithmetic, T: Real, const K: usize>(rows: &Rows<T, K>, k: usize) -> [Eight<A, T>; 6] {
+fn read_six_rows<A: Arithmetic, T: Real, const K: usize>(rows: &Rows<T, K>, k: usize) -> [Eight<A, T>; 6] {
     let ([a, b, c], [d, e, f]) = (read_vectors::<A, T, K>(rows, k), read_vectors::<A, T, K>(rows, k + 3));
     [a, b, c, d, e, f]
 }
@@ -205,23 +206,23 @@ fn inertia_about_root<A: Arithmetic, T: Real>(
     let p = read_vectors::<A, T, 20>(link, POSITION);
     let mass = read::<A, T, 10>(inertia, 0);
     let moment = transform(&rotation, &read_vectors::<A, T, 10>(inertia, MOMENT));
-    let tensor = symmetric(&six_rows(inertia, TENSOR));
+    let tensor = symmetric(&read_six_rows(inertia, TENSOR));
     let [x, y, z] = rotation;
     let [tx, ty, tz] = [transform(&tensor, &x), transform(&tensor, &y), transform(&tensor, &z)];
     let half = A::splat(T::one() / (T::one() + T::one()));
     let s = scale_add(&p, mass * half, &moment);
     let twice = dot(&p, &s);
     let twice = twice + twice;
-    let entry = |i: usize, j: usize, rotated: Eight<A, T>| {
+    let inertia_entry_about_root = |i: usize, j: usize, rotated: Eight<A, T>| {
         A::neg_mul_add(p[i], s[j], A::neg_mul_add(s[i], p[j], rotated))
     };
     let six = [
-        entry(0, 0, dot(&tx, &x)) + twice,
-        entry(1, 1, dot(&ty, &y)) + twice,
-        entry(2, 2, dot(&tz, &z)) + twice,
-        entry(1, 2, dot(&ty, &z)),
-        entry(2, 0, dot(&tz, &x)),
-        entry(0, 1, dot(&tx, &y)),
+        inertia_entry_about_root(0, 0, dot(&tx, &x)) + twice,
+        inertia_entry_about_root(1, 1, dot(&ty, &y)) + twice,
+        inertia_entry_about_root(2, 2, dot(&tz, &z)) + twice,
+        inertia_entry_about_root(1, 2, dot(&ty, &z)),
+        inertia_entry_about_root(2, 0, dot(&tz, &x)),
+        inertia_entry_about_root(0, 1, dot(&tx, &y)),
     ];
     (Inertias { mass, moment: scale_add(&p, mass, &moment), tensor: symmetric(&six) }, six)
 }

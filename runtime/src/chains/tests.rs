@@ -6,9 +6,9 @@ use nalgebra::{Matrix3, Rotation3, SVector, Unit, Vector3, Vector6};
 const FREE_VELOCITIES: usize = 6;
 
 /// Sequence of pseudorandom numbers between −1 and 1.
-struct Sequence(u64);
+struct PseudorandomSequence(u64);
 
-impl Sequence {
+impl PseudorandomSequence {
     fn number(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
@@ -32,7 +32,7 @@ struct Link {
 }
 
 impl Link {
-    fn random(parent: Option<usize>, next: &mut Sequence) -> Link {
+    fn random(parent: Option<usize>, next: &mut PseudorandomSequence) -> Link {
         let (mass, center) = (1.5 + next.number(), next.vector());
         let inner = Matrix3::from_fn(|_, _| next.number());
         let inertia_of_unit_mass =
@@ -82,7 +82,7 @@ fn cross_force(v: &Vector6<f64>, f: &Vector6<f64>) -> Vector6<f64> {
 }
 
 impl Tree {
-    fn first_joint(&self) -> usize {
+    fn first_jointed_link(&self) -> usize {
         usize::from(self.free)
     }
 
@@ -98,7 +98,7 @@ impl Tree {
                 Some(p) => (all[p].rotation, all[p].position),
                 None => (Matrix3::identity(), Vector3::zeros()),
             };
-            if k < self.first_joint() {
+            if k < self.first_jointed_link() {
                 all.push(PlacedTestLink { rotation, position, subspace: Vector6::zeros() });
                 continue;
             }
@@ -133,7 +133,7 @@ impl Tree {
         for (k, (link, place)) in self.links.iter().zip(&places).enumerate() {
             let (mut twist, mut change) =
                 link.parent.map_or((Vector6::zeros(), spatial(ground, Vector3::zeros())), |p| motions[p]);
-            if k < self.first_joint() {
+            if k < self.first_jointed_link() {
                 twist += Vector6::from_column_slice(&v[..6]);
                 change += Vector6::from_column_slice(&a[..6]);
             } else {
@@ -148,7 +148,7 @@ impl Tree {
         let mut tau = vec![0.0; v.len()];
         for (k, link) in self.links.iter().enumerate().rev() {
             let wrench = wrenches[k];
-            if k < self.first_joint() {
+            if k < self.first_jointed_link() {
                 tau[..6].copy_from_slice(wrench.as_slice());
             } else {
                 tau[self.first_velocity_index(k)] = places[k].subspace.dot(&wrench);
@@ -178,15 +178,15 @@ impl Tree {
 }
 
 /// Compares the loops with central differences of the recursive Newton–Euler algorithm.
-fn check_tree<const N: usize, const B: usize, const FREE: bool>(
+fn check_derivatives_of_tree<const N: usize, const B: usize, const FREE: bool>(
     parents: &[Option<usize>],
     blocks: [Block<'_>; B],
 ) {
-    let mut next = Sequence(N as u64);
+    let mut next = PseudorandomSequence(N as u64);
     let links = parents.iter().map(|parent| Link::random(*parent, &mut next)).collect();
     let tree = Tree { links, free: FREE };
-    let mut numbers = || SVector::<f64, N>::from_fn(|_, _| next.number());
-    let (q, v, a) = (numbers(), numbers(), numbers());
+    let mut random_vector = || SVector::<f64, N>::from_fn(|_, _| next.number());
+    let (q, v, a) = (random_vector(), random_vector(), random_vector());
     let ground = Vector3::new(1.0, -2.0, 9.0);
     let mut rows = [[Row([0.0; 8]); 20]; B];
     let mut inertias = [[Row([0.0; 8]); 10]; B];
@@ -251,7 +251,10 @@ fn block<'a>(
 #[test]
 fn a_chain_of_two_blocks_has_the_derivatives_of_newton_euler() {
     let parents: Vec<Option<usize>> = (0..11_usize).map(|k| k.checked_sub(1)).collect();
-    check_tree::<11, 2, false>(&parents, [block((0, 8), None, &[], &[1]), block((8, 3), Some(0), &[0], &[])]);
+    check_derivatives_of_tree::<11, 2, false>(
+        &parents,
+        [block((0, 8), None, &[], &[1]), block((8, 3), Some(0), &[0], &[])],
+    );
 }
 
 #[test]
@@ -263,7 +266,7 @@ fn a_tree_with_branches_has_the_derivatives_of_newton_euler() {
         &[Some(1), Some(12)],
     ]
     .concat();
-    check_tree::<14, 5, false>(
+    check_derivatives_of_tree::<14, 5, false>(
         &parents,
         [
             block((0, 2), None, &[], &[1, 2, 3, 4]),
@@ -278,7 +281,7 @@ fn a_tree_with_branches_has_the_derivatives_of_newton_euler() {
 #[test]
 fn a_free_tree_has_the_derivatives_of_newton_euler() {
     // A free root with branches of three and two links.
-    check_tree::<11, 3, true>(
+    check_derivatives_of_tree::<11, 3, true>(
         &[None, Some(0), Some(1), Some(2), Some(0), Some(4)],
         [
             block((0, 6), None, &[], &[1, 2]),
@@ -291,10 +294,10 @@ fn a_free_tree_has_the_derivatives_of_newton_euler() {
 #[test]
 fn only_listed_entries_become_zero() {
     let blocks = [block((0, 2), None, &[], &[])];
-    let mut next = Sequence(3);
+    let mut next = PseudorandomSequence(3);
     let mut row = || Row([next.number(), next.number(), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
     let (rows, inertias) = ([[(); 20].map(|()| row())], [[(); 10].map(|()| row())]);
-    let derivatives = |zeros: [&[(usize, usize)]; 2]| {
+    let derivatives_with_zeroed_entries = |zeros: [&[(usize, usize)]; 2]| {
         let mut found = [SMatrix::<f64, 2, 2>::zeros(); 2];
         let [by_q, by_v] = &mut found;
         let ground = [0.0, 0.0, 9.8];
@@ -308,8 +311,8 @@ fn only_listed_entries_become_zero() {
         );
         found
     };
-    let mut expected = derivatives([&[], &[]]);
+    let mut expected = derivatives_with_zeroed_entries([&[], &[]]);
     assert!(expected[0][(1, 0)] != 0.0 && expected[1][(1, 1)] != 0.0);
     (expected[0][(1, 0)], expected[1][(1, 1)]) = (0.0, 0.0);
-    assert_eq!(derivatives([&[(0, 1)], &[(1, 1)]]), expected);
+    assert_eq!(derivatives_with_zeroed_entries([&[(0, 1)], &[(1, 1)]]), expected);
 }

@@ -59,23 +59,23 @@ pub fn assemble<
     mode: Option<i8>,
 ) -> Result<SVector<T, NQ>, ConstraintError> {
     complete::check_held_velocity_indices::<NV>(held)?;
-    let is_wanted = |q: &SVector<T, NQ>| mode.is_none() || assembly_mode(loops, q, held) == mode;
+    let has_wanted_mode = |q: &SVector<T, NQ>| mode.is_none() || assembly_mode(loops, q, held) == mode;
     // First configuration found whose angles differ by more than half a revolution, as gears may require.
     let mut far = None;
-    let mut attempt = |from: &SVector<T, NQ>| -> Result<Option<SVector<T, NQ>>, ConstraintError> {
+    let mut try_assembly_from = |from: &SVector<T, NQ>| -> Result<Option<SVector<T, NQ>>, ConstraintError> {
         let found = remove_whole_revolutions(loops, q, descend_to_configuration(loops, from, held)?);
         let turned = loops
             .angles
             .iter()
             .map(|k| revolutions_from_guess(q, &found, *k).abs())
             .fold(T::zero(), |a, b| a.max(b));
-        if turned <= constant(0.5) && is_wanted(&found) {
+        if turned <= constant(0.5) && has_wanted_mode(&found) {
             return Ok(Some(found));
         }
-        far = far.or_else(|| is_wanted(&found).then_some(found));
+        far = far.or_else(|| has_wanted_mode(&found).then_some(found));
         Ok(None)
     };
-    let first = attempt(q);
+    let first = try_assembly_from(q);
     match first {
         Ok(Some(found)) => return Ok(found),
         Ok(None) | Err(ConstraintError::Configuration { .. }) => {}
@@ -83,17 +83,17 @@ pub fn assemble<
     }
     // Steele and Vigna, Computationally easy, spectrally good multipliers for congruential generators, 2022.
     let mut state = 1_u64;
-    let mut next = || {
+    let mut next_random_number = || {
         state = state.wrapping_mul(0xD134_2543_DE82_EF95).wrapping_add(1);
         (state >> 32) as f64 / f64::from(1_u32 << 31) - 1.0
     };
     for start in 0..AGAIN * if mode.is_some() { ROUNDS } else { 1 } {
         let distance = NEAR + (FAR - NEAR) / AGAIN as f64 * (start % AGAIN) as f64;
         let step = SVector::<T, NV>::from_fn(|k, _| {
-            let part = next();
+            let part = next_random_number();
             if held.contains(&k) { nalgebra::zero() } else { constant(distance * part) }
         });
-        if let Ok(Some(found)) = attempt(&(loops.integrate)(q, &step)) {
+        if let Ok(Some(found)) = try_assembly_from(&(loops.integrate)(q, &step)) {
             return Ok(found);
         }
     }

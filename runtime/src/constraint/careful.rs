@@ -62,13 +62,14 @@ where
     if regular {
         return least;
     }
-    if let Some(clear) = DynamicsEquations::<T, NV, NC>::reliable_row_magnitude(v, &least.0) {
+    if let Some(clear) = DynamicsEquations::<T, NV, NC>::reliable_row_magnitude_for_acceleration(v, &least.0)
+    {
         let (taken, regular) =
             system.solve_with_rows_above_magnitude(structure, clear, DependentRowTreatment::Dropped);
         // The threshold depends on the accelerations that the constraints permit, not on those that they
         // prevent.
         let ratio = epsilon::<T>().sqrt() * largest_magnitude(&least.0) / largest_magnitude(&taken.0);
-        let enough = DynamicsEquations::<T, NV, NC>::reliable_row_magnitude(v, &taken.0)
+        let enough = DynamicsEquations::<T, NV, NC>::reliable_row_magnitude_for_acceleration(v, &taken.0)
             .map(|clear| clear.max(ratio))
             .filter(|clear| *clear < well_conditioned_threshold());
         if regular
@@ -309,7 +310,7 @@ impl<T: Real, const NV: usize, const NC: usize> DynamicsEquations<T, NV, NC> {
     /// Returns the relative magnitude of rows that determine accelerations like `a` to half of the digits, if
     /// it is below the usual threshold. If constraints are satisfied up to a rounding error ε, rows of
     /// relative magnitude σ cause an acceleration error of ε v² / σ³.
-    fn reliable_row_magnitude(v: &SVector<T, NV>, a: &SVector<T, NV>) -> Option<T> {
+    fn reliable_row_magnitude_for_acceleration(v: &SVector<T, NV>, a: &SVector<T, NV>) -> Option<T> {
         let speed = largest_magnitude(v);
         let clear =
             (constant::<T>(4.0) * epsilon::<T>().sqrt() * speed * speed / largest_magnitude(a)).cbrt();

@@ -3,7 +3,7 @@
 
 use super::{
     Constrained, ConstraintError, acceptable_residual, is_residual_acceptable, largest_entry,
-    largest_jacobian_entry, largest_magnitude_or_one,
+    largest_jacobian_entry_or_one, largest_magnitude_or_one,
 };
 use crate::Real;
 use crate::private::{constant, epsilon, to_f64};
@@ -101,12 +101,14 @@ where
     let bias = mechanism.constraint_bias(t, q, v);
     // Magnitude of the terms of the gap, relative to which it is rounded.
     let magnitude_of_gap_terms = |a: &SVector<T, NV>| {
-        largest_magnitude_or_one(&bias).max(largest_magnitude_or_one(a) * largest_jacobian_entry(&jacobian))
+        largest_magnitude_or_one(&bias)
+            .max(largest_magnitude_or_one(a) * largest_jacobian_entry_or_one(&jacobian))
     };
     let acceleration_residual = |a: &SVector<T, NV>| jacobian * a + bias;
-    let is_exact = |size: T, a: &SVector<T, NV>| size <= epsilon::<T>() * magnitude_of_gap_terms(a);
+    let is_gap_within_rounding =
+        |size: T, a: &SVector<T, NV>| size <= epsilon::<T>() * magnitude_of_gap_terms(a);
     let (a, (worst, size)) =
-        correct_free_entries(&mass, &jacobian, held, *a, acceleration_residual, is_exact)?;
+        correct_free_entries(&mass, &jacobian, held, *a, acceleration_residual, is_gap_within_rounding)?;
     if size <= epsilon::<T>().sqrt() * magnitude_of_gap_terms(&a) {
         return Ok(a);
     }
@@ -155,7 +157,7 @@ where
     if left
         > epsilon::<T>().sqrt()
             * largest_magnitude_or_one(&bias)
-                .max(largest_magnitude_or_one(a) * largest_jacobian_entry(&jacobian))
+                .max(largest_magnitude_or_one(a) * largest_jacobian_entry_or_one(&jacobian))
     {
         return Err(ConstraintError::Acceleration { constraint: name(worst), acceleration: to_f64(left) });
     }

@@ -116,9 +116,9 @@ impl<T: Real, const NV: usize, const NC: usize, const NU: usize> Motion<'_, T, N
     pub fn independent<const NX: usize, const NP: usize, const NS: usize>(
         &self,
     ) -> Result<Linearization<T, NX, NU, NP, NS>, ConstraintError> {
-        let [positions, speeds] = self.dependent_entries();
+        let [positions, speeds] = self.dependent_entry_solutions();
         match positions.independent_count() == NP && speeds.independent_count() == NS {
-            true => Ok(self.assemble(&self.blocks_of_entries(&positions, &speeds))),
+            true => Ok(self.assemble(&self.independent_blocks_for(&positions, &speeds))),
             false => Err(ConstraintError::Singular),
         }
     }
@@ -127,30 +127,30 @@ impl<T: Real, const NV: usize, const NC: usize, const NU: usize> Motion<'_, T, N
     /// numbers are known only at run time: columns behind the independent ones are zero, and indices behind
     /// them are [`usize::MAX`].
     pub fn independent_blocks(&self) -> IndependentBlocks<T, NV, NV, NV> {
-        let [positions, speeds] = self.dependent_entries();
-        self.blocks_of_entries(&positions, &speeds)
+        let [positions, speeds] = self.dependent_entry_solutions();
+        self.independent_blocks_for(&positions, &speeds)
     }
 
     /// Returns the solutions of the constraints for the dependent coordinates and speeds.
-    fn dependent_entries(&self) -> [DependentEntries<T, NV, NC>; 2] {
+    fn dependent_entry_solutions(&self) -> [DependentEntrySolution<T, NV, NC>; 2] {
         let mut on_configurations = self.jacobian;
         for k in self.holonomic..NC {
             scale_row(&mut on_configurations, k, T::zero());
         }
         [
-            DependentEntries::new(on_configurations, SMatrix::zeros(), self.preferred),
-            DependentEntries::new(self.jacobian, -self.rates_by_q, self.preferred),
+            DependentEntrySolution::new(on_configurations, SMatrix::zeros(), self.preferred),
+            DependentEntrySolution::new(self.jacobian, -self.rates_by_q, self.preferred),
         ]
     }
 
-    fn blocks_of_entries<const NP: usize, const NS: usize>(
+    fn independent_blocks_for<const NP: usize, const NS: usize>(
         &self,
-        positions: &DependentEntries<T, NV, NC>,
-        speeds: &DependentEntries<T, NV, NC>,
+        positions: &DependentEntrySolution<T, NV, NC>,
+        speeds: &DependentEntrySolution<T, NV, NC>,
     ) -> IndependentBlocks<T, NV, NP, NS> {
-        let (coordinates, shape) = positions.independent_entries::<NP>();
-        let (free, gamma) = speeds.independent_entries::<NS>();
-        let carried = speeds.particular_solution() * shape;
+        let (coordinates, shape) = positions.independent_entries_and_map::<NP>();
+        let (free, gamma) = speeds.independent_entries_and_map::<NS>();
+        let carried = speeds.particular_solution_matrix() * shape;
         IndependentBlocks {
             coordinates,
             speeds: free,
@@ -192,14 +192,14 @@ impl<T: Real, const NV: usize, const NC: usize, const NU: usize> Motion<'_, T, N
 }
 
 /// Solution of `J x = R y` for dependent entries of `x`, by Gauss–Jordan elimination with complete pivoting.
-struct DependentEntries<T, const NV: usize, const NC: usize> {
+struct DependentEntrySolution<T, const NV: usize, const NC: usize> {
     left: SMatrix<T, NC, NV>,
     right: SMatrix<T, NC, NV>,
     /// Column of the pivot in each row of the elimination; `None` for a row without a pivot.
     pivots: [Option<usize>; NC],
 }
 
-impl<T: Real, const NV: usize, const NC: usize> DependentEntries<T, NV, NC> {
+impl<T: Real, const NV: usize, const NC: usize> DependentEntrySolution<T, NV, NC> {
     fn new(mut left: SMatrix<T, NC, NV>, mut right: SMatrix<T, NC, NV>, preferred: &[usize]) -> Self {
         let mut pivots = [None; NC];
         let small = constant::<T>(1e6) * epsilon() * left.amax();
@@ -242,7 +242,7 @@ impl<T: Real, const NV: usize, const NC: usize> DependentEntries<T, NV, NC> {
 
     /// Returns the indices of at most `N` independent entries, and the matrix that maps them to all entries.
     /// Columns of entries that do not exist are zero.
-    fn independent_entries<const N: usize>(&self) -> ([usize; N], SMatrix<T, NV, N>) {
+    fn independent_entries_and_map<const N: usize>(&self) -> ([usize; N], SMatrix<T, NV, N>) {
         let is_not_pivot = |j: &usize| !self.pivots.contains(&Some(*j));
         let mut indices = [usize::MAX; N];
         indices.iter_mut().zip((0..NV).filter(is_not_pivot)).for_each(|(slot, j)| *slot = j);
@@ -258,7 +258,7 @@ impl<T: Real, const NV: usize, const NC: usize> DependentEntries<T, NV, NC> {
     }
 
     /// Returns the matrix that maps `y` to the dependent entries, for independent entries of zero.
-    fn particular_solution(&self) -> SMatrix<T, NV, NV> {
+    fn particular_solution_matrix(&self) -> SMatrix<T, NV, NV> {
         SMatrix::from_fn(|i, j| {
             let row = self.pivots.iter().position(|p| *p == Some(i));
             row.map_or(T::zero(), |row| entry_or_zero(&self.right, row, j))

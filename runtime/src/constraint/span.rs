@@ -112,7 +112,7 @@ pub(super) struct ScaledColumn<T, const N: usize> {
 impl<T: Real, const N: usize> ScaledColumn<T, N> {
     /// Returns the length of a column without its first `first` entries. Also returns the largest ratio of a
     /// remaining entry to the largest number that it was computed from.
-    fn length_of_trailing_entries(&self, first: usize) -> (T, T) {
+    fn trailing_length_and_accuracy(&self, first: usize) -> (T, T) {
         let all = self.x.iter().zip(&self.size).skip(first);
         let (square, most) = all.fold((T::zero(), T::zero()), |(square, most), (x, size)| {
             let share = if *size > T::zero() { x.abs() / *size } else { T::zero() };
@@ -200,7 +200,7 @@ impl<T: Real, const NV: usize, const NC: usize> ColumnSpan<T, NV, NC> {
         while self.rank < most.min(NV) {
             let mut best = (None, T::zero());
             for (k, column) in self.columns.iter().enumerate().filter(|(_, c)| c.step.is_none()) {
-                let (length, share) = column.length_of_trailing_entries(self.rank);
+                let (length, share) = column.trailing_length_and_accuracy(self.rank);
                 // Of columns with equal length up to rounding errors, the first is used, so that the choice
                 // does not depend on rounding.
                 if length > best.1 * constant(1.01) && share > least {

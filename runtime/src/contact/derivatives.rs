@@ -269,13 +269,13 @@ where
     M: ContactDerivatives<NQ, NV, NU, NK, NR, Scalar = T>,
 {
     let mut found = HeldDerivatives::zeros();
-    write_bilateral_derivatives(mechanism, t, (q, v), tau, touches, gains, &mut found)?;
+    write_held_derivatives(mechanism, t, (q, v), tau, touches, gains, &mut found)?;
     Ok(found)
 }
 
 /// Writes accelerations, contact forces and their derivatives into `result`, overwriting any content.
 #[allow(clippy::too_many_arguments, reason = "a state, what acts, and what is told of contacts")]
-pub(super) fn write_bilateral_derivatives<
+pub(super) fn write_held_derivatives<
     M,
     T,
     const NQ: usize,
@@ -419,14 +419,15 @@ fn write_friction_derivative<T: Real, const NV: usize, const NR: usize>(
         return;
     }
     for j in 0..NV {
-        let entry_of_changes = |i: usize| changes.get((i, j)).copied().unwrap_or(T::zero());
-        let faster =
-            tangents.clone().fold(T::zero(), |sum, i| sum + entry_or_zero(rates, i) * entry_of_changes(i))
-                / speed;
+        let slip_velocity_derivative_at_row = |i: usize| changes.get((i, j)).copied().unwrap_or(T::zero());
+        let faster = tangents
+            .clone()
+            .fold(T::zero(), |sum, i| sum + entry_or_zero(rates, i) * slip_velocity_derivative_at_row(i))
+            / speed;
         for i in tangents.clone() {
             if let Some(turned) = turned.get_mut((i, j)) {
-                *turned =
-                    -(entry_of_changes(i) - entry_or_zero(rates, i) / speed * faster) * (friction / speed);
+                *turned = -(slip_velocity_derivative_at_row(i) - entry_or_zero(rates, i) / speed * faster)
+                    * (friction / speed);
             }
         }
     }

@@ -51,7 +51,7 @@ where
             .map_err(add_time_to_error)?;
     let (free, given) = rk4_step_with_contacts(&mut system, &start, (&at_start, &rate), h, t + h);
     let free = project_end_of_step(&system, free, t)?;
-    let came = StepStart::from_state((q, v), h, given * (h * constant(0.5)));
+    let came = StepStart::start_from_state((q, v), h, given * (h * constant(0.5)));
     let end = free.v - given;
     let velocities = ContactVelocities::unevaluated_in_configuration(mechanism, t + h, &free.q);
     let closed = closed_contacts(mechanism, t + h, (&free.q, &end), Some((&came, &velocities)))
@@ -64,7 +64,7 @@ where
     let contact_velocities_before_impulses = || {
         ContactVelocities::<M, T, NQ, NV, NR>::rates_of_selected_contacts(
             &selection,
-            velocities.rates_of_velocity(&carried),
+            velocities.rate_function_of_velocity(&carried),
         )
     };
     let solved = compute_closed_contact_impulses(

@@ -1,12 +1,12 @@
 //! Mechanism whose contact modes are prescribed.
 
 use super::derivatives::{
-    ContactDerivatives, HeldDerivatives, contact_derivatives_with_gains, write_bilateral_derivatives,
+    ContactDerivatives, HeldDerivatives, contact_derivatives_with_gains, write_held_derivatives,
 };
 use super::held::{Held, accelerations_and_responses};
 use super::{Assumed, Contacts, Touch, Touched};
 use crate::constraint::{ConstraintError, Projected};
-use crate::derivatives::{ByMotion, Derivatives, unknown_matrix};
+use crate::derivatives::{ByMotion, Derivatives, nan_matrix};
 use crate::forward::{constants, each_function};
 use crate::integrate::{Features, Hooks};
 use crate::private::constant;
@@ -163,7 +163,7 @@ impl<M, T: Real, const NK: usize, const NR: usize> Holding<'_, M, T, NK, NR> {
     where
         M: ContactDerivatives<NQ, NV, NU, NK, NR, Scalar = T>,
     {
-        write_bilateral_derivatives(self.mechanism, t, (q, v), tau, &self.touches, self.gains, into)
+        write_held_derivatives(self.mechanism, t, (q, v), tau, &self.touches, self.gains, into)
     }
 }
 
@@ -335,7 +335,7 @@ where
     ) -> ByMotion<T, NV, NV> {
         match contact_derivatives_with_gains(self.mechanism, t, (q, v), tau, &self.touches, self.gains) {
             Ok(found) => (found.by_q, found.by_v, found.by_tau),
-            Err(_) => (unknown_matrix(), unknown_matrix(), unknown_matrix()),
+            Err(_) => (nan_matrix(), nan_matrix(), nan_matrix()),
         }
     }
 
@@ -355,7 +355,7 @@ where
                 found.a
             }
             Err(_) => {
-                (*by_q, *by_v, *by_tau) = (unknown_matrix(), unknown_matrix(), unknown_matrix());
+                (*by_q, *by_v, *by_tau) = (nan_matrix(), nan_matrix(), nan_matrix());
                 SVector::repeat(constant(f64::NAN))
             }
         }

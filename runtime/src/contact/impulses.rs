@@ -64,7 +64,7 @@ impl<T: Real, const NV: usize> Impulses<T, NV> {
             .filter(|k| (0..3).any(|i| contact_impulse_or_zero(*k, i) != T::zero()));
         let places = (0..CONTACTS).flat_map(|list| (0..NV).map(move |place| (list, place)));
         for (k, (list, place)) in pressed.zip(places) {
-            let number: u32 = selection.index_of_contact(k).try_into().unwrap_or(u32::MAX);
+            let number: u32 = selection.mechanism_index_of_contact(k).try_into().unwrap_or(u32::MAX);
             let values = [
                 constant(f64::from(number) + 1.0),
                 contact_impulse_or_zero(k, 0),
@@ -92,7 +92,7 @@ impl<T: Real, const NV: usize> Impulses<T, NV> {
         for [numbers, impulses @ ..] in &self.0 {
             for (place, number) in numbers.iter().enumerate().take_while(|(_, number)| **number > T::zero()) {
                 let is_same_contact = |k: &usize| {
-                    let own: u32 = selection.index_of_contact(*k).try_into().unwrap_or(u32::MAX);
+                    let own: u32 = selection.mechanism_index_of_contact(*k).try_into().unwrap_or(u32::MAX);
                     constant::<T>(f64::from(own) + 1.0) == *number
                 };
                 let Some(k) = (0..selection.contact_count()).find(is_same_contact) else { continue };

@@ -13,7 +13,7 @@ use nalgebra::SVector;
 const MOST_STEPS: usize = 30;
 
 /// Returns the name of the contact with the deepest overlap, and its gap.
-fn deepest_overlap<
+fn deepest_overlapping_contact<
     M,
     T,
     const NQ: usize,
@@ -56,7 +56,8 @@ where
     T: Real,
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
-    let (constraint, gap) = deepest_overlap::<M, T, NQ, NV, NU, NK, NR>(&mechanism.contact_gaps(t, q))?;
+    let (constraint, gap) =
+        deepest_overlapping_contact::<M, T, NQ, NV, NU, NK, NR>(&mechanism.contact_gaps(t, q))?;
     match gap >= -touching_distance::<T>() {
         true => Ok(()),
         false => Err(ConstraintError::Overlap { constraint, depth: to_f64(-gap) }),
@@ -114,7 +115,7 @@ where
     let (mut q, mut pushes) = (*q, SVector::<T, NR>::zeros());
     for step in 0.. {
         let gaps = mechanism.contact_gaps(t, &q);
-        let (constraint, gap) = deepest_overlap::<M, T, NQ, NV, NU, NK, NR>(&gaps)?;
+        let (constraint, gap) = deepest_overlapping_contact::<M, T, NQ, NV, NU, NK, NR>(&gaps)?;
         let overlaps = gap < -enough;
         let left = ConstraintError::Overlap { constraint, depth: to_f64(-gap) };
         // What was pushed too far goes back.

@@ -26,8 +26,8 @@ mod search;
 use crate::Real;
 use crate::private::constant;
 use axes::{EdgeAxis, FaceAxis, SeparationBounds, best_edge_axis, best_face_axis};
-use clip::{ClippedPoint, PointOrigin, clipped_points};
-use closest::{Closest, closest_features, edge_parameters};
+use clip::{ClippedPoint, PointOrigin, write_clipped_points};
+use closest::{ClosestFeatures, closest_features, edge_parameters};
 use nalgebra::{Matrix3, SVector, Vector3};
 
 /// Maximum numbers of vertices, faces and edges of a polytope.
@@ -114,7 +114,7 @@ enum DeterminingFeatures<T> {
     /// Two edges that cross.
     Edges(EdgeAxis<T>),
     /// Closest points of separated polytopes.
-    Points(Closest),
+    Points(ClosestFeatures),
 }
 
 fn vector<T: Real>(v: [f64; 3]) -> Vector3<T> {
@@ -152,7 +152,7 @@ impl<'a, T: Real> Placed<'a, T> {
             *offset = constant::<T>(face.offset) + normal.dot(position);
         }
         for (direction, edge) in placed.directions.iter_mut().zip(shape.edges) {
-            *direction = rotation * edge_of(shape, edge).1;
+            *direction = rotation * edge_as_centered_segment(shape, edge).1;
         }
         if shape.radius > 0.0 {
             // The end faces of a cylinder.
@@ -198,7 +198,7 @@ impl<'a, T: Real> Placed<'a, T> {
     }
 
     /// Returns a position in the axes of the body.
-    fn to_body(&self, place: &Vector3<T>) -> Vector3<T> {
+    fn position_in_body_axes(&self, place: &Vector3<T>) -> Vector3<T> {
         self.rotation.tr_mul(&(place - self.position))
     }
 
@@ -225,7 +225,7 @@ impl<'a, T: Real> Placed<'a, T> {
     }
 
     /// Returns the least height above a plane through the origin.
-    fn lowest(&self, normal: &Vector3<T>) -> T {
+    fn lowest_height_along_normal(&self, normal: &Vector3<T>) -> T {
         if self.shape.radius > 0.0 {
             return normal.dot(&self.support(&-normal));
         }
@@ -234,15 +234,18 @@ impl<'a, T: Real> Placed<'a, T> {
 }
 
 /// Returns the midpoint of an edge, the unit vector along it and half of its length, in the axes of the body.
-fn edge_of<T: Real>(shape: &Polytope<'_>, edge: &PolytopeEdge) -> (Vector3<T>, Vector3<T>, T) {
-    let [a, b] = edge.ends.map(|k| vertex_of::<T>(shape, k));
+fn edge_as_centered_segment<T: Real>(
+    shape: &Polytope<'_>,
+    edge: &PolytopeEdge,
+) -> (Vector3<T>, Vector3<T>, T) {
+    let [a, b] = edge.ends.map(|k| vertex_position_in_body::<T>(shape, k));
     let along = b - a;
     let length = along.norm();
     let half = constant::<T>(0.5);
     ((a + b) * half, along / length, length * half)
 }
 
-fn vertex_of<T: Real>(shape: &Polytope<'_>, index: u8) -> Vector3<T> {
+fn vertex_position_in_body<T: Real>(shape: &Polytope<'_>, index: u8) -> Vector3<T> {
     shape.vertices.get(usize::from(index)).map_or_else(Vector3::zeros, |p| vector(*p))
 }
 
@@ -271,35 +274,37 @@ pub fn write_contact_features<T: Real>(pairs: &[PolytopePair<'_>], poses: &[T], 
 /// Writes the features of a pair. With `is_bounded`, faces and edges that cannot determine the contact are
 /// skipped, which does not change the result.
 fn write_features<T: Real>(pair: &PolytopePair<'_>, pose: &[T], is_bounded: bool, into: &mut [T]) {
-    let entry = |k: usize| pose.get(k).copied().unwrap_or_else(T::zero);
-    let rotation = Matrix3::from_fn(|i, j| entry(3 * j + i));
-    let position = Vector3::from_fn(|i, _| entry(9 + i));
+    let pose_entry_or_zero = |k: usize| pose.get(k).copied().unwrap_or_else(T::zero);
+    let rotation = Matrix3::from_fn(|i, j| pose_entry_or_zero(3 * j + i));
+    let position = Vector3::from_fn(|i, _| pose_entry_or_zero(9 + i));
     let first = Placed::new(&pair.first, &Matrix3::identity(), &Vector3::zeros());
     let second = Placed::new(&pair.second, &rotation, &position);
     if pair.has_cylinder() {
-        return cylinders::write_features(&first, &second, entry(12), into);
+        return cylinders::write_features(&first, &second, pose_entry_or_zero(12), into);
     }
     let tolerance = constant::<T>((pair.first.size + pair.second.size) * TIE_TOLERANCE);
     let bounds = match is_bounded {
-        true => SeparationBounds::of_centers(&first, &second),
+        true => SeparationBounds::bounds_from_centers(&first, &second),
         false => SeparationBounds { between: None },
     };
-    let Some(face) = best_face_axis(&first, &second, entry(12), tolerance, &bounds) else { return };
+    let Some(face) = best_face_axis(&first, &second, pose_entry_or_zero(12), tolerance, &bounds) else {
+        return;
+    };
     let (own, other) = if face.is_second { (&second, &first) } else { (&first, &second) };
     let mut points = [ClippedPoint::unused(); clip::MAX_POINTS];
-    let (count, opposite) = clipped_points(own, other, &face, tolerance, &mut points);
+    let (count, opposite) = write_clipped_points(own, other, &face, tolerance, &mut points);
     let edge = best_edge_axis(&first, &second, face.distance, &bounds);
     let points = points.get(..count).unwrap_or(&[]);
     let features = choose_features((&first, &second), &face, edge, points, is_bounded, tolerance);
     write_face_and_edges(&features, (&first, &second), &face, into);
     let opposite = opposite.and_then(|k| other.shape.faces.get(k));
     let slots = into.get_mut(HEAD..).unwrap_or(&mut []);
-    write_points(points, pair.points, (own.shape, other.shape), (&face, opposite), slots);
+    write_features_of_face_points(points, pair.points, (own.shape, other.shape), (&face, opposite), slots);
 }
 
 /// Writes the features of the points on a face to a list of at most `most` points. Further points are omitted
 /// evenly around the face.
-fn write_points<T: Real>(
+fn write_features_of_face_points<T: Real>(
     points: &[ClippedPoint<T>],
     most: usize,
     shapes: (&Polytope<'_>, &Polytope<'_>),
@@ -317,7 +322,7 @@ fn write_points<T: Real>(
             *used = true;
         }
         if let Some(slot) = into.get_mut(POINT * place..POINT * (place + 1)) {
-            write_point(point, shapes, faces, slot);
+            write_features_of_point(point, shapes, faces, slot);
         }
     }
 }
@@ -362,13 +367,16 @@ fn write_face_and_edges<T: Real>(
     let unbounded = -constant::<T>(1e6 * (first.shape.size + second.shape.size));
     let (least, side, is_closest, closest) = match features {
         DeterminingFeatures::Face => (unbounded, zero, zero, None),
-        DeterminingFeatures::Edges(edge) => {
-            (edge.distance - face.distance, edge.side, zero, Some(Closest::of_edges(edge.edges)))
-        }
+        DeterminingFeatures::Edges(edge) => (
+            edge.distance - face.distance,
+            edge.side,
+            zero,
+            Some(ClosestFeatures::from_edge_indices(edge.edges)),
+        ),
         DeterminingFeatures::Points(closest) => (unbounded, zero, one, Some(*closest)),
     };
     let nowhere = [(Vector3::zeros(), Vector3::zeros(), zero); 2];
-    let segments = closest.map_or(nowhere, |closest| closest.segments(first.shape, second.shape));
+    let segments = closest.map_or(nowhere, |closest| closest.features_as_segments(first.shape, second.shape));
     let values = [if face.is_second { one } else { zero }, least]
         .into_iter()
         .chain(components(normal))
@@ -382,7 +390,7 @@ fn write_face_and_edges<T: Real>(
 /// Writes the features of a point on a face: whether it exists, whether it is cut off by a plane, and whether
 /// its line belongs to the polytope with the face; the line, and the plane of the other polytope that
 /// cuts it.
-fn write_point<T: Real>(
+fn write_features_of_point<T: Real>(
     point: &ClippedPoint<T>,
     (own, other): (&Polytope<'_>, &Polytope<'_>),
     (face, opposite): (&FaceAxis<T>, Option<&PolytopeFace<'_>>),
@@ -392,17 +400,18 @@ fn write_point<T: Real>(
     let normal = own.faces.get(face.face).map_or_else(Vector3::zeros, |face| vector::<T>(face.normal));
     let (is_cut, is_own, start, along, plane) = match point.origin {
         PointOrigin::Vertex(k) => {
-            (zero, zero, vertex_of(other, k), Vector3::zeros(), (Vector3::zeros(), zero))
+            (zero, zero, vertex_position_in_body(other, k), Vector3::zeros(), (Vector3::zeros(), zero))
         }
         PointOrigin::Edge { ends: [a, b], side } => {
-            let (start, end) = (vertex_of::<T>(other, a), vertex_of::<T>(other, b));
+            let (start, end) =
+                (vertex_position_in_body::<T>(other, a), vertex_position_in_body::<T>(other, b));
             let plane = clip::side_plane(own, face.face, side, &normal);
             (one, zero, start, (end - start).normalize(), plane)
         }
         PointOrigin::BoxInCorner(k) => {
             let plane =
                 opposite.map_or_else(|| (normal, zero), |face| (vector(face.normal), constant(face.offset)));
-            (one, one, vertex_of(own, k), normal, plane)
+            (one, one, vertex_position_in_body(own, k), normal, plane)
         }
     };
     let values = [one, is_cut, is_own]

@@ -248,7 +248,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     }
 
     /// Whether surfaces approach each other without impulses.
-    pub(super) fn is_loaded(&self) -> bool {
+    pub(super) fn do_surfaces_approach(&self) -> bool {
         (0..self.count)
             .filter(|k| self.has_gap_function(*k))
             .any(|k| self.free[self.rows[k].first] < T::zero())
@@ -281,12 +281,12 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
                 row[j] = column.get(*i).copied().unwrap_or(none);
             }
         }
-        self.set_step_sizes();
+        self.compute_natural_map_steps();
     }
 
     /// Computes the step size of the natural map for each contact from the diagonal of `W`, which must be
     /// known.
-    pub(super) fn set_step_sizes(&mut self) {
+    pub(super) fn compute_natural_map_steps(&mut self) {
         let mut diagonal = RowList::<T, NR>::repeat_entry(T::zero());
         (0..self.size).for_each(|i| diagonal[i] = self.delassus_matrix_entry(i, i));
         let reach = diagonal.iter().take(self.size).fold(T::zero(), |reach, weight| reach.max(*weight));
@@ -308,16 +308,16 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
 
     /// Returns changes of the contact velocities by impulses.
     fn contact_velocity_changes(&self, impulses: &RowList<T, NR>) -> RowList<T, NR> {
-        self.velocities_after_impulses(RowList::repeat_entry(T::zero()), impulses)
+        self.add_contact_velocity_changes(RowList::repeat_entry(T::zero()), impulses)
     }
 
     /// Returns the contact velocities after impulses.
     fn contact_velocities_after(&self, impulses: &RowList<T, NR>) -> RowList<T, NR> {
-        self.velocities_after_impulses(self.free, impulses)
+        self.add_contact_velocity_changes(self.free, impulses)
     }
 
     /// Adds changes by impulses to contact velocities.
-    fn velocities_after_impulses(
+    fn add_contact_velocity_changes(
         &self,
         mut rates: RowList<T, NR>,
         impulses: &RowList<T, NR>,
@@ -427,7 +427,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
                     most.max(terms.fold(free.abs(), add_product_magnitude))
                 })
             }
-            None => self.basis.largest_magnitude(&self.free, impulses),
+            None => self.basis.largest_term_magnitude_sum(&self.free, impulses),
         };
         (0..self.count).fold(most, |most, k| most.max(self.least[k])) * epsilon() * constant(ROUNDINGS)
     }
@@ -458,7 +458,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         other: &ContactProblem<T, OK, OR>,
         rows: &[usize],
     ) {
-        self.basis.select_rows(&other.basis, rows);
+        self.basis.copy_selected_rows(&other.basis, rows);
         if self.basis.is_exact() {
             return;
         }
@@ -531,14 +531,14 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         }
         kept.size = kept.count;
         kept.copy_selected_weights(self, normals.get(..kept.count).unwrap_or_default());
-        let pushes_at_normal_rows = |pushes: &RowList<T, GR>| {
+        let spread_pushes_to_normal_rows = |pushes: &RowList<T, GR>| {
             let mut all = RowList::<T, NR>::repeat_entry(T::zero());
             normals.iter().zip(pushes.iter()).take(kept.count).for_each(|(n, push)| all[*n] = *push);
             all
         };
         // Longest displacement at a contact.
         let largest_displacement = |pushes: &RowList<T, GR>| {
-            let displacements = self.contact_velocity_changes(&pushes_at_normal_rows(pushes));
+            let displacements = self.contact_velocity_changes(&spread_pushes_to_normal_rows(pushes));
             displacements.iter().take(self.size).fold(T::zero(), |most, x| most.max(x.abs()))
         };
         let most = overlap.max(distance) * constant(FARTHEST);
@@ -567,7 +567,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
                 pushes.iter_mut().for_each(|push| *push *= most / way);
             }
         }
-        Some(self.values_at_mechanism_rows(&pushes_at_normal_rows(&pushes)))
+        Some(self.values_at_mechanism_rows(&spread_pushes_to_normal_rows(&pushes)))
     }
 }
 

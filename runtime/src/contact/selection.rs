@@ -66,12 +66,12 @@ impl<const CK: usize, const CR: usize> ContactSelection<CK, CR> {
     }
 
     /// Returns a selected contact's index in the mechanism.
-    pub(super) fn index_of_contact(&self, k: usize) -> usize {
+    pub(super) fn mechanism_index_of_contact(&self, k: usize) -> usize {
         self.contacts[k]
     }
 
     /// Returns a selected row's index in the mechanism.
-    pub(super) fn index_of_row(&self, i: usize) -> usize {
+    pub(super) fn mechanism_index_of_row(&self, i: usize) -> usize {
         self.rows[i]
     }
 
@@ -157,10 +157,11 @@ impl<const CK: usize, const CR: usize> ContactSelection<CK, CR> {
             && factor.factorise_matrix(&mechanism.mass_matrix(t, q))
         {
             if self.compute_impulse_basis(jacobian, mechanism.contact_columns(), factor, &mut problem.basis) {
-                problem.set_step_sizes();
+                problem.compute_natural_map_steps();
                 return;
             }
-            let matrix = self.fill_matrix(jacobian, |row| factor.solve_with_factor(row), problem);
+            let matrix =
+                self.compute_responses_and_weights(jacobian, |row| factor.solve_with_factor(row), problem);
             *effects = ImpulseEffects::Matrix(matrix);
             return;
         }
@@ -168,7 +169,7 @@ impl<const CK: usize, const CR: usize> ContactSelection<CK, CR> {
         let none = mechanism.impulse(t, q, &still, T::zero(), &still);
         let solve =
             |row: [T; NV]| (mechanism.impulse(t, q, &still, T::zero(), &SVector::from(row)) - none).data.0[0];
-        *effects = ImpulseEffects::Matrix(self.fill_matrix(jacobian, solve, problem));
+        *effects = ImpulseEffects::Matrix(self.compute_responses_and_weights(jacobian, solve, problem));
     }
 
     /// Returns the effects of impulses at the selected contacts from those at all contacts.
@@ -243,7 +244,7 @@ impl<const CK: usize, const CR: usize> ContactSelection<CK, CR> {
 
     /// Returns `M⁻¹ Gᵀ` for selected rows, given a function that returns the velocity change by a generalized
     /// impulse, and sets the matrix `W` of a problem.
-    fn fill_matrix<T: Real, const NV: usize, const NR: usize>(
+    fn compute_responses_and_weights<T: Real, const NV: usize, const NR: usize>(
         &self,
         jacobian: &SMatrix<T, NR, NV>,
         solve: impl Fn([T; NV]) -> [T; NV],

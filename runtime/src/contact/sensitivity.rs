@@ -69,7 +69,8 @@ where
     let at_start = ContactInstant { t, h: T::zero(), q, motion: None, free: &free, given: None };
     let (after, held) =
         contacts.differentiate_impulses(&at_start, &Impulses::none()).map_err(as_step_error)?;
-    let rate = after.map(|(after, _)| after.plus_scaled(-T::one(), &free).scaled_derivatives(T::one() / h));
+    let rate =
+        after.map(|(after, _)| after.plus_scaled(-T::one(), &free).scaled_with_derivatives(T::one() / h));
     let motion = motion_under_contact_forces(method, &start, &velocity, &before, rate.as_ref());
     let (given, (q, moved)) = (motion.given.as_ref(), &motion.q);
     let free = given.map_or(motion.v, |given| motion.v.plus_scaled(-T::one(), given));
@@ -156,7 +157,7 @@ impl<M, T: Real, const NQ: usize, const NV: usize> ContactStepStart<'_, M, T, NQ
         }
         let here = VectorWithDerivatives::zero_displacement_with_derivatives();
         let place = (at.q, at.motion.unwrap_or(&here));
-        self.displaced_state((at.t, place), &change.scaled_derivatives(at.h * constant(0.5)), after)
+        self.displaced_state((at.t, place), &change.scaled_with_derivatives(at.h * constant(0.5)), after)
     }
 
     /// Returns the state after a displacement, with the velocity in the axes there.
@@ -208,7 +209,7 @@ where
         }
         let responses = acted.velocity_responses();
         let underivable_contact_error = |contact| {
-            let index = acted.selection.index_of_contact(contact);
+            let index = acted.selection.mechanism_index_of_contact(contact);
             let constraint = M::CONTACTS.get(index).copied().unwrap_or_default();
             ConstraintError::NoDerivatives { constraint }
         };
@@ -218,7 +219,7 @@ where
             let after = closed.velocity_after_impulses();
             let Some(closing) = closing else { return (after, None) };
             let (place, v) = self.contacts.state_after_contact_impulses(self.at, &after);
-            let end = match closed.closing_displacement(closing, &place) {
+            let end = match closed.differentiated_gap_closing_displacement(closing, &place) {
                 Some(by) => self.contacts.displaced_state((self.at.t, (&place.0, &place.1)), &by, &v),
                 None => (place, v),
             };
@@ -262,7 +263,7 @@ enum InertiaAtImpulses<T, const NV: usize> {
 
 /// Derivatives with respect to the configuration, and to inputs that act directly: of the velocity change by
 /// constant impulses, and of the contact velocities at a constant velocity.
-struct DirectDerivatives<T, const NV: usize, const NU: usize, const CR: usize> {
+struct DerivativesAtConstantImpulses<T, const NV: usize, const NU: usize, const CR: usize> {
     velocities: SMatrix<T, NV, NV>,
     velocities_by_u: Option<SMatrix<T, NV, NU>>,
     rates: ContactVelocityDerivatives<T, NV, NU, CR>,
@@ -319,11 +320,11 @@ where
 
     /// Returns the derivatives of the velocity change by `impulses`, and of the contact velocities at the
     /// velocity `v`.
-    fn direct_derivatives(
+    fn derivatives_at_constant_impulses(
         &self,
         v: &SVector<T, NV>,
         impulses: &SVector<T, CR>,
-    ) -> DirectDerivatives<T, NV, NU, CR> {
+    ) -> DerivativesAtConstantImpulses<T, NV, NU, CR> {
         let (m, t, q) = (self.contacts.mechanism, self.at.t, self.at.q);
         let (still, effect) = (SVector::zeros(), self.responses * impulses);
         let (selection, all) =
@@ -355,17 +356,17 @@ where
             InertiaAtImpulses::MassMatrix(factor, _) => factor.solve_all_columns(&momenta),
             InertiaAtImpulses::Response(.., response) => product(response, &momenta),
         });
-        DirectDerivatives { velocities, velocities_by_u, rates }
+        DerivativesAtConstantImpulses { velocities, velocities_by_u, rates }
     }
 
-    /// Returns [`direct_derivatives`](Self::direct_derivatives) for a displacement `v` instead of a velocity:
-    /// contact velocities of prescribed motions are left out.
-    fn displacement_derivatives(
+    /// Returns [`derivatives_at_constant_impulses`](Self::direct_derivatives) for a displacement `v` instead
+    /// of a velocity: contact velocities of prescribed motions are left out.
+    fn derivatives_at_constant_displacement(
         &self,
         v: &SVector<T, NV>,
         impulses: &SVector<T, CR>,
-    ) -> DirectDerivatives<T, NV, NU, CR> {
-        let mut found = self.direct_derivatives(v, impulses);
+    ) -> DerivativesAtConstantImpulses<T, NV, NU, CR> {
+        let mut found = self.derivatives_at_constant_impulses(v, impulses);
         if self.contacts.mechanism.contacts_drift() {
             let still = self.contact_velocity_derivatives(&SVector::zeros());
             found.rates.by_q -= still.by_q;
@@ -397,7 +398,7 @@ where
         let (layout, mut rows) = (selection.contact_layout(), [zeros(); 2]);
         let [friction, restitution] = &mut rows;
         for k in 0..selection.contact_count() {
-            let contact = selection.index_of_contact(k);
+            let contact = selection.mechanism_index_of_contact(k);
             layout.tangent_rows(k).for_each(|i| copy_row(&parts.friction, contact, friction, i));
             copy_row(&parts.restitution, contact, restitution, layout.rows(k).first);
         }
@@ -409,7 +410,7 @@ where
     fn add_direct_velocity_change(
         &self,
         sum: &mut VectorWithDerivatives<T, NV, NU>,
-        direct: &DirectDerivatives<T, NV, NU, CR>,
+        direct: &DerivativesAtConstantImpulses<T, NV, NU, CR>,
         factor: T,
     ) {
         if let Some(by_u) = &direct.velocities_by_u {
@@ -435,7 +436,7 @@ where
             add_multiple(&mut sum.by_u, T::one(), by_u);
         }
         match self.at.motion {
-            Some(motion) => sum.add_product(&direct.by_q, motion),
+            Some(motion) => sum.add_matrix_product(&direct.by_q, motion),
             None => add_multiple(&mut sum.by_q, T::one(), &direct.by_q),
         }
     }
@@ -458,14 +459,14 @@ where
             acting += transport.0;
             transport.1
         });
-        let direct = self.direct_derivatives(&after.value, &acting);
+        let direct = self.derivatives_at_constant_impulses(&after.value, &acting);
         self.add_direct_velocity_change(&mut after, &direct, T::one());
         if let Some(Some(transported)) = transport {
             transported.add_velocity_change(self.responses, &mut after);
         }
         let mut rates = ContactRowDerivatives::zeros();
         self.add_direct_contact_velocity(&mut rates, &direct.rates);
-        rates.add_product(&self.jacobian, &after);
+        rates.add_matrix_product(&self.jacobian, &after);
         let restitution = coefficients.as_ref().map(|[_, restitution]| restitution);
         self.subtract_restitution_derivatives(&mut rates, restitution);
         rates.impulse_derivatives(&equations, friction).add_velocity_change(self.responses, &mut after);
@@ -489,15 +490,15 @@ where
             return (start * -half, None);
         }
         let left = given.value - self.responses * start;
-        let direct = self.displacement_derivatives(&left, &start);
+        let direct = self.derivatives_at_constant_displacement(&left, &start);
         let mut effect = VectorWithDerivatives { value: SVector::zeros(), ..*given };
         self.add_direct_velocity_change(&mut effect, &direct, -T::one());
         let mut rates = ContactRowDerivatives::zeros();
         self.add_direct_contact_velocity(&mut rates, &direct.rates);
-        rates.add_product(&self.jacobian, &effect);
+        rates.add_matrix_product(&self.jacobian, &effect);
         let starts = rates
             .impulse_derivatives(
-                &problem.velocity_preserving_equations(&problem.chosen_rows_with_impulses()),
+                &problem.velocity_preserving_equations(&problem.possible_impulse_row_mask()),
                 None,
             )
             .scaled_row_derivatives(-T::one());
@@ -514,9 +515,9 @@ where
             offset += rotated.impulses;
             let mut slips = ContactRowDerivatives::zeros();
             self.add_direct_contact_velocity(&mut slips, &self.contact_velocity_derivatives(&slipping.value));
-            slips.add_product(&self.jacobian, &slipping);
-            derivatives.add_rows(&rotated.by_impulses, &starts);
-            derivatives.add_rows(&rotated.by_slip, &slips);
+            slips.add_matrix_product(&self.jacobian, &slipping);
+            derivatives.add_row_matrix_product(&rotated.by_impulses, &starts);
+            derivatives.add_row_matrix_product(&rotated.by_slip, &slips);
             if let Some(friction) = friction {
                 add_scaled_rows(&mut derivatives.by_u, &rotated.by_friction, friction);
             }
@@ -539,7 +540,9 @@ where
         let velocity = VectorWithDerivatives::start_velocity_with_derivatives(start.1);
         let carried = match at.motion {
             None => velocity,
-            Some(motion) => manifold.transport_between(at.t, (start.0, &velocity), (at.q, motion)),
+            Some(motion) => {
+                manifold.transport_velocity_between_configurations(at.t, (start.0, &velocity), (at.q, motion))
+            }
         };
         let before = selection.selected_contact_rates(&m.contact_rates(at.t, at.q, &carried.value));
         if let Some(restitution) = restitution {
@@ -550,16 +553,16 @@ where
         if !problem.demands_restitution() {
             return;
         }
-        let factors = problem.restitution_derivatives(&before);
+        let factors = problem.demand_derivatives_by_velocity(&before);
         let mut before = ContactRowDerivatives::zeros();
         self.add_direct_contact_velocity(&mut before, &self.contact_velocity_derivatives(&carried.value));
-        before.add_product(&self.jacobian, &carried);
+        before.add_matrix_product(&self.jacobian, &carried);
         rates.add_scaled_rows(&-factors, &before);
     }
 
     /// Returns the displacement that closes gaps at the end of a step, with its derivatives; `None` if there
     /// is no such displacement. `q` is the configuration before the displacement.
-    fn closing_displacement(
+    fn differentiated_gap_closing_displacement(
         &self,
         closing: &GapClosingDisplacement<T, CK, CR>,
         (q, motion): &ConfigurationWithDerivatives<T, NQ, NV, NU>,
@@ -569,17 +572,25 @@ where
         if *part == T::zero() {
             return None;
         }
-        let (closed, kept) =
-            problem.closed_rows(impulses, (gaps, touching_distance(), *reach), pushes.as_ref());
+        let (closed, kept) = problem.closed_and_limited_gap_rows(
+            impulses,
+            (gaps, touching_distance(), *reach),
+            pushes.as_ref(),
+        );
         let m = self.contacts.mechanism;
         let jacobian = selected_contact_rows(selection, &m.contact_jacobian(self.at.t, q));
         let mut rates = ContactRowDerivatives::zeros();
-        rates.add_product(&jacobian, motion);
+        rates.add_matrix_product(&jacobian, motion);
         let none = SVector::zeros();
         if let Some(parts) = m.contact_derivatives_by_inputs(self.at.t, q, &SVector::zeros(), &none) {
             let (layout, mut gaps) = (selection.contact_layout(), zeros::<T, CR, NU>());
             for k in 0..selection.contact_count() {
-                copy_row(&parts.gaps, selection.index_of_contact(k), &mut gaps, layout.rows(k).first);
+                copy_row(
+                    &parts.gaps,
+                    selection.mechanism_index_of_contact(k),
+                    &mut gaps,
+                    layout.rows(k).first,
+                );
             }
             rates.by_u += gaps;
         }
@@ -590,11 +601,11 @@ where
         all.add_scaled_rows(&rows, &rates);
         if let Some(pushes) = pushes {
             by.value = self.responses * pushes;
-            let direct = self.displacement_derivatives(&by.value, pushes);
+            let direct = self.derivatives_at_constant_displacement(&by.value, pushes);
             self.add_direct_velocity_change(&mut by, &direct, T::one());
             let mut more = ContactRowDerivatives::zeros();
             self.add_direct_contact_velocity(&mut more, &direct.rates);
-            more.add_product(&self.jacobian, &by);
+            more.add_matrix_product(&self.jacobian, &by);
             rows += problem.indicator_of_rows(&kept);
             all.add_scaled_rows(&rows, &more);
         }
@@ -602,6 +613,6 @@ where
         held.iter_mut().zip(kept.iter()).for_each(|(held, kept)| *held |= *kept);
         all.impulse_derivatives(&problem.velocity_preserving_equations(&held), None)
             .add_velocity_change(self.responses, &mut by);
-        Some(by.scaled_derivatives(*part))
+        Some(by.scaled_with_derivatives(*part))
     }
 }

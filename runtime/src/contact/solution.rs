@@ -96,7 +96,7 @@ where
     let (layout, laws) = (selection.contact_layout(), selection.selected_laws(&laws));
     let after = ContactVelocities::<M, T, NQ, NV, NR>::rates_of_selected_contacts(
         selection,
-        velocities.rates_of_velocity(free),
+        velocities.rate_function_of_velocity(free),
     );
     problem.add_closed_contacts(layout, &laws, &selection.selected_contact_mask(), &after);
     if laws.iter().any(|law| law.stiction > law.friction) {
@@ -105,7 +105,7 @@ where
             phase::norm_of_range(&rates, layout.tangent_rows(k)) <= touching_distance()
         });
     }
-    let is_loaded = problem.is_loaded();
+    let is_loaded = problem.do_surfaces_approach();
     let before = match is_loaded && laws.iter().all(|law| law.restitution == T::zero()) {
         true => SVector::zeros(),
         false => before(),
@@ -115,8 +115,9 @@ where
     }
     selection.compute_impulse_effects(mechanism, (t, q, velocities), closed, effects, problem);
     problem.set_velocity_count(NV);
-    let unsolved_error =
-        |contact| unsolved_contact_error::<M, T, NQ, NV, NU, NK, NR>(selection.index_of_contact(contact));
+    let unsolved_error = |contact| {
+        unsolved_contact_error::<M, T, NQ, NV, NU, NK, NR>(selection.mechanism_index_of_contact(contact))
+    };
     let mut equations = ImpulseEquations::new();
     let (given, recorded, is_moving) = match given {
         Some(((given, recorded), is_moving)) => (Some(given), recorded.recall_impulses(selection), is_moving),
@@ -128,7 +129,7 @@ where
     let transported = given.filter(|given| is_moving && **given != still).map(|given| {
         let rates = ContactVelocities::<M, T, NQ, NV, NR>::rates_of_selected_contacts(
             selection,
-            velocities.rate_changes(given),
+            velocities.rate_change_function(given),
         );
         problem.correct_velocity_for_rotation(given, (&rates, recorded.as_ref()), effects, &mut equations)
     });
@@ -141,8 +142,8 @@ where
     problem.compute_compression_impulses(&laws, &before).map_err(unsolved_error)?;
     problem.set_restitution_demands(&laws, &before, T::one());
     // Only prescribed motions and restitution can add energy.
-    let may_gain = problem.demands_restitution() && !velocities.is_driven();
-    let mut found = problem.solve_from(start.as_ref(), &mut equations);
+    let may_gain = problem.demands_restitution() && !velocities.has_prescribed_contact_velocities();
+    let mut found = problem.solve_impulses_from_start(start.as_ref(), &mut equations);
     while found.as_ref().is_ok_and(|impulses| problem.switch_to_kinetic_friction(impulses)) {
         found = problem.solve_impulses();
     }
@@ -181,7 +182,7 @@ fn impulses_with_restitution<T: Real, const NK: usize, const NR: usize>(
         }
         step *= constant(0.5);
         problem.set_restitution_demands(laws, before, least + step);
-        if let Ok(impulses) = problem.solve_from(start.as_ref(), equations)
+        if let Ok(impulses) = problem.solve_impulses_from_start(start.as_ref(), equations)
             && !(may_gain && problem.adds_energy(&impulses))
         {
             least += step;
@@ -195,6 +196,6 @@ fn impulses_with_restitution<T: Real, const NK: usize, const NR: usize>(
             problem.set_violation(violation);
             Ok(impulses)
         }
-        None => problem.solve_from(start.as_ref(), equations),
+        None => problem.solve_impulses_from_start(start.as_ref(), equations),
     }
 }

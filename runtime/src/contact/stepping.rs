@@ -40,7 +40,7 @@ pub(super) struct StepStart<'a, T, const NQ: usize, const NV: usize> {
 impl<'a, T: Real, const NQ: usize, const NV: usize> StepStart<'a, T, NQ, NV> {
     /// Returns the start of a step of `h` seconds from a state, with the displacement `held` by the assumed
     /// contact forces.
-    pub(super) fn from_state(
+    pub(super) fn start_from_state(
         start: (&'a SVector<T, NQ>, &'a SVector<T, NV>),
         h: T,
         held: SVector<T, NV>,
@@ -112,8 +112,9 @@ where
         }
         let layout = ContactLayout::of_mechanism(mechanism);
         let carried = came.transport_velocity_to_end(mechanism, t, q);
-        let (rate, after) = (velocities.rates_of_velocity(&carried), velocities.rates_of_velocity(free));
-        let displacement = velocities.rate_changes(held);
+        let (rate, after) =
+            (velocities.rate_function_of_velocity(&carried), velocities.rate_function_of_velocity(free));
+        let displacement = velocities.rate_change_function(held);
         for (k, (closed, (gap, start))) in closed.iter_mut().zip(gaps.iter().zip(&starts)).enumerate() {
             if *closed || (!is_held && *start > touching_distance()) {
                 continue;
@@ -185,7 +186,7 @@ where
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
     let half = h * constant(0.5);
-    let came = StepStart::from_state((start, v), h, given * half);
+    let came = StepStart::start_from_state((start, v), h, given * half);
     // What impulses do to the velocity they do in the mean of the step.
     let state_after_impulses = |after: &SVector<T, NV>, by_contacts: &SVector<T, NV>| {
         let moved = (after - free - given) * half;
@@ -278,7 +279,7 @@ where
         let carried = came.transport_velocity_to_end(mechanism, t, q);
         ContactVelocities::<M, T, NQ, NV, NR>::rates_of_selected_contacts(
             &selection,
-            velocities.rates_of_velocity(&carried),
+            velocities.rate_function_of_velocity(&carried),
         )
     };
     let moves_farther_than = |far: T| v.iter().any(|v| v.abs() * h > far);
@@ -354,8 +355,8 @@ where
     Ok(touched)
 }
 
-/// Returns the displacement that closes the gaps of the selected contacts at the end of a step of `h` seconds,
-/// whose contact velocities are at most `largest_contact_velocity` in magnitude.
+/// Returns the displacement that closes the gaps of the selected contacts at the end of a step of `h`
+/// seconds, whose contact velocities are at most `largest_contact_velocity` in magnitude.
 fn gap_closing_displacement<T: Real, const NV: usize, const CK: usize, const CR: usize>(
     acted: &ContactsWithImpulses<T, NV, CK, CR>,
     gaps: SVector<T, CK>,
@@ -408,11 +409,11 @@ where
     }
     let crept = ContactVelocities::<M, T, NQ, NV, NR>::rates_of_selected_contacts(
         selection,
-        velocities.rate_changes(&excess),
+        velocities.rate_change_function(&excess),
     );
     let slip = ContactVelocities::<M, T, NQ, NV, NR>::rates_of_selected_contacts(
         selection,
-        velocities.rates_of_velocity(after),
+        velocities.rate_function_of_velocity(after),
     );
     let (layout, mut back) = (selection.contact_layout(), SVector::<T, CR>::zeros());
     for tangents in (0..CK).map(|k| layout.tangent_rows(k)) {
@@ -423,7 +424,7 @@ where
             tangents.for_each(|i| set_entry(&mut back, i, -entry_or_zero(&crept, i)));
         }
     }
-    Some(problem.impulses_for_changes(&back))
+    Some(problem.mechanism_impulses_for_contact_changes(&back))
 }
 
 /// Returns a state with the largest fraction of the restitution, common to all contacts, after which the
@@ -465,7 +466,7 @@ where
         // None of it, then a bit of the part each.
         let part = if round == 0 { T::zero() } else { least + step };
         acted.problem.set_restitution_demands(laws, before, part);
-        if let Ok(impulses) = acted.problem.solve_from(start.as_ref(), &mut equations) {
+        if let Ok(impulses) = acted.problem.solve_impulses_from_start(start.as_ref(), &mut equations) {
             start = Some(acted.problem.impulses_plus_base(&impulses));
             let touched = led(&acted.velocity_change(&acted.problem.impulses_at_mechanism_rows(&impulses)));
             if round == 0 || total_energy(mechanism, t, &touched) <= most {

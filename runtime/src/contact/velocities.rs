@@ -59,7 +59,7 @@ impl<'a, M, T: Real, const NQ: usize, const NV: usize, const NR: usize>
     }
 
     /// Whether prescribed motions cause contact velocities.
-    pub(super) fn is_driven<const NU: usize, const NK: usize>(&self) -> bool
+    pub(super) fn has_prescribed_contact_velocities<const NU: usize, const NK: usize>(&self) -> bool
     where
         M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
     {
@@ -68,7 +68,7 @@ impl<'a, M, T: Real, const NQ: usize, const NV: usize, const NR: usize>
 
     /// Returns a function of the contact velocities for a velocity, which takes a contact and one of its
     /// rows.
-    pub(super) fn rates_of_velocity<const NU: usize, const NK: usize>(
+    pub(super) fn rate_function_of_velocity<const NU: usize, const NK: usize>(
         &self,
         v: &SVector<T, NV>,
     ) -> impl Fn(usize, usize) -> T
@@ -87,7 +87,7 @@ impl<'a, M, T: Real, const NQ: usize, const NV: usize, const NR: usize>
 
     /// Returns a function of the changes of the contact velocities for a change of the velocity, which takes
     /// a contact and one of its rows.
-    pub(super) fn rate_changes<const NU: usize, const NK: usize>(
+    pub(super) fn rate_change_function<const NU: usize, const NK: usize>(
         &self,
         change: &SVector<T, NV>,
     ) -> impl Fn(usize, usize) -> T
@@ -105,8 +105,8 @@ impl<'a, M, T: Real, const NQ: usize, const NV: usize, const NR: usize>
         move |k, row| all.as_ref().map_or_else(|| change(k, row), |all| entry_or_zero(all, row))
     }
 
-    /// Computes [`rate_changes`](Self::rate_changes) from the contact Jacobian, which the first call of the
-    /// returned function evaluates.
+    /// Computes [`rate_change_function`](Self::rate_changes) from the contact Jacobian, which the first call
+    /// of the returned function evaluates.
     fn rate_change_function_from_jacobian<const NU: usize, const NK: usize>(
         &self,
         change: &SVector<T, NV>,
@@ -132,7 +132,11 @@ impl<'a, M, T: Real, const NQ: usize, const NV: usize, const NR: usize>
         for k in 0..selection.contact_count() {
             let Rows { first, count } = layout.rows(k);
             (first..first + count).for_each(|i| {
-                set_entry(&mut rates, i, rate(selection.index_of_contact(k), selection.index_of_row(i)))
+                set_entry(
+                    &mut rates,
+                    i,
+                    rate(selection.mechanism_index_of_contact(k), selection.mechanism_index_of_row(i)),
+                )
             });
         }
         rates

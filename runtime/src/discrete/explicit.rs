@@ -53,7 +53,7 @@ impl<T: Real, const NV: usize, const NU: usize> VectorWithDerivatives<T, NV, NU>
         add_multiple(&mut self.by_u, s, &other.by_u);
     }
 
-    pub(crate) fn scaled_derivatives(&self, s: T) -> Self {
+    pub(crate) fn scaled_with_derivatives(&self, s: T) -> Self {
         let mut multiple = Self { value: self.value * s, by_q: zeros(), by_v: zeros(), by_u: zeros() };
         write_multiple(s, &self.by_q, &mut multiple.by_q);
         write_multiple(s, &self.by_v, &mut multiple.by_v);
@@ -139,7 +139,7 @@ where
 
     /// Returns the acceleration at a time `h` after the start, with its derivatives with respect to the start
     /// of the step.
-    pub(crate) fn acceleration_after(
+    pub(crate) fn acceleration_after_time(
         &self,
         h: T,
         (q, motion): &(SVector<T, NQ>, VectorWithDerivatives<T, NV, NU>),
@@ -320,12 +320,12 @@ impl<T: Real> DifferentiableStep<T> for Rk4<T> {
             return Ok(());
         }
         let v = VectorWithDerivatives::start_velocity_with_derivatives(v);
-        let stage_derivatives = |h: T,
-                                 (rate, acceleration): &(
+        let stage_rates_with_derivatives = |h: T,
+                                            (rate, acceleration): &(
             VectorWithDerivatives<T, NV, NU>,
             VectorWithDerivatives<T, NV, NU>,
         )| {
-            let (displacement, v) = (rate.scaled_derivatives(h), v.plus_scaled(h, acceleration));
+            let (displacement, v) = (rate.scaled_with_derivatives(h), v.plus_scaled(h, acceleration));
             let (by_q, by_dv, by_v) =
                 mechanism.displacement_rate_derivatives(q, &displacement.value, &v.value);
             let value = mechanism.displacement_rate(q, &displacement.value, &v.value);
@@ -334,18 +334,18 @@ impl<T: Real> DifferentiableStep<T> for Rk4<T> {
             if mechanism.features().speeds {
                 rate.by_q += by_q;
             }
-            (rate, start.acceleration_after(h, &start.displace_configuration(&displacement), &v))
+            (rate, start.acceleration_after_time(h, &start.displace_configuration(&displacement), &v))
         };
         let half = h * constant(0.5);
-        let k1 = (v, start.acceleration_after(T::zero(), &start.start_configuration(), &v));
-        let k2 = stage_derivatives(half, &k1);
-        let k3 = stage_derivatives(half, &k2);
-        let k4 = stage_derivatives(h, &k3);
+        let k1 = (v, start.acceleration_after_time(T::zero(), &start.start_configuration(), &v));
+        let k2 = stage_rates_with_derivatives(half, &k1);
+        let k3 = stage_rates_with_derivatives(half, &k2);
+        let k4 = stage_rates_with_derivatives(h, &k3);
         let (displacement, change) = runge_kutta_change(
             h,
             [&k1, &k2, &k3, &k4],
             VectorWithDerivatives::plus_scaled,
-            VectorWithDerivatives::scaled_derivatives,
+            VectorWithDerivatives::scaled_with_derivatives,
         );
         *into = start.transition_at_step_end(&displacement, &v.plus_scaled(T::one(), &change));
         Ok(())

@@ -14,7 +14,9 @@ use crate::constraint::{
 use crate::derivatives::{ByMotion, Derivatives};
 use crate::integrate::{Error, ImplicitMidpoint, SemiImplicitEuler};
 use crate::private::{constant, epsilon};
-use crate::speeds::{displacement_of_mechanism, midpoint_velocity, reached_configuration_derivatives};
+use crate::speeds::{
+    mechanism_displacement_given_final_velocity, midpoint_velocity, reached_configuration_derivatives,
+};
 use crate::{Real, at};
 use nalgebra::{SMatrix, SVector};
 
@@ -58,7 +60,7 @@ where
 }
 
 /// Returns the derivatives of the velocity-dependent part of the momentum's rate.
-fn velocity_momentum_rate_derivatives<M, T, const NQ: usize, const NV: usize, const NU: usize>(
+fn velocity_dependent_momentum_rate_derivatives<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     t: T,
     q: &SVector<T, NQ>,
@@ -333,7 +335,7 @@ impl<T: Real> DifferentiableStep<T> for ImplicitMidpoint<T> {
     where
         M: Derivatives<NQ, NV, NU, Scalar = T>,
     {
-        *into = self.prepare_step(m, t, q, v, u)?.transition_without_constraints();
+        *into = self.compute_step_data(m, t, q, v, u)?.transition_without_constraints();
         Ok(())
     }
 
@@ -355,7 +357,7 @@ impl<T: Real> DifferentiableStep<T> for ImplicitMidpoint<T> {
     where
         M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
     {
-        let made = self.prepare_step(m, t, q, v, u)?;
+        let made = self.compute_step_data(m, t, q, v, u)?;
         let (now, middle) = (t + made.half_step_length(), made.middle);
         let force = m.momentum_rate(now, &middle, &made.w) + m.generalized_forces(now, &middle, &made.w, u);
         made.constrained_transition(&(force * made.half_step_length()))
@@ -363,7 +365,7 @@ impl<T: Real> DifferentiableStep<T> for ImplicitMidpoint<T> {
 }
 
 impl<T: Real> ImplicitMidpoint<T> {
-    fn prepare_step<'a, M, const NQ: usize, const NV: usize, const NU: usize>(
+    fn compute_step_data<'a, M, const NQ: usize, const NV: usize, const NU: usize>(
         &self,
         m: &'a M,
         t: T,
@@ -379,7 +381,7 @@ impl<T: Real> ImplicitMidpoint<T> {
         let half = h * constant(0.5);
         let w = midpoint_velocity(m, q, mean, half);
         let (by_q, by_v) = momentum_derivatives(m, t, q, v);
-        let middle = m.integrate(q, &displacement_of_mechanism(m, q, &w, half));
+        let middle = m.integrate(q, &mechanism_displacement_given_final_velocity(m, q, &w, half));
         Ok(ImplicitStepData {
             led: reached_configuration_derivatives(m, q, &w, half),
             middle,
@@ -425,7 +427,7 @@ where
     let (by_q, by_v) = momentum_derivatives(m, t, q, v);
     let (force_by_q, force_by_v, force_by_u) = m.generalized_forces_derivatives(t, q, v, u);
     let rest_by_q = m.momentum_rate_derivatives(t, q, &still).0;
-    let middle = m.integrate(q, &displacement_of_mechanism(m, q, &w, half));
+    let middle = m.integrate(q, &mechanism_displacement_given_final_velocity(m, q, &w, half));
     let force = m.momentum_rate(t, q, &still) + m.generalized_forces(t, q, v, u);
     let made = ImplicitStepData {
         led: reached_configuration_derivatives(m, q, &w, half),
@@ -436,7 +438,7 @@ where
         q,
         w,
         end,
-        rate: velocity_momentum_rate_derivatives(m, t + half, &middle, &w),
+        rate: velocity_dependent_momentum_rate_derivatives(m, t + half, &middle, &w),
         start: (by_q + (force_by_q + rest_by_q) * h, by_v + force_by_v * h, force_by_u * h),
         kick: m.generalized_momentum(t, q, v) + force * h,
     };

@@ -153,7 +153,7 @@ impl<T: Real, const NV: usize, const NP: usize> VectorWithParameterDerivatives<T
         Self { value: self.value + other.value * s, by: self.by + other.by * s }
     }
 
-    fn scaled_derivatives(&self, s: T) -> Self {
+    fn scaled_with_derivatives(&self, s: T) -> Self {
         Self { value: self.value * s, by: self.by * s }
     }
 }
@@ -225,7 +225,7 @@ impl<T: Real> StepByParameters<T> for SemiImplicitEuler<T> {
                 u,
             ),
         );
-        Ok((configuration_derivatives(m, q, &after.scaled_derivatives(h)), after.by))
+        Ok((configuration_derivatives(m, q, &after.scaled_with_derivatives(h)), after.by))
     }
 }
 
@@ -242,12 +242,12 @@ impl<T: Real> StepByParameters<T> for Rk4<T> {
     {
         let (h, v) = (self.nominal_step_length(), VectorWithParameterDerivatives::parameter_independent(v));
         let half = h * constant(0.5);
-        let stage_derivatives = |after: T,
-                                 (rate, change): &(
+        let stage_rates_with_derivatives = |after: T,
+                                            (rate, change): &(
             VectorWithParameterDerivatives<T, NV, NP>,
             VectorWithParameterDerivatives<T, NV, NP>,
         )| {
-            let (displacement, v) = (rate.scaled_derivatives(after), v.plus_scaled(after, change));
+            let (displacement, v) = (rate.scaled_with_derivatives(after), v.plus_scaled(after, change));
             let (_, by_dv, by_v) = m.displacement_rate_derivatives(q, &displacement.value, &v.value);
             let value = m.displacement_rate(q, &displacement.value, &v.value);
             let mut by = product(&by_v, &v.by);
@@ -267,14 +267,14 @@ impl<T: Real> StepByParameters<T> for Rk4<T> {
                 u,
             ),
         );
-        let k2 = stage_derivatives(half, &k1);
-        let k3 = stage_derivatives(half, &k2);
-        let k4 = stage_derivatives(h, &k3);
+        let k2 = stage_rates_with_derivatives(half, &k1);
+        let k3 = stage_rates_with_derivatives(half, &k2);
+        let k4 = stage_rates_with_derivatives(h, &k3);
         let (displacement, change) = runge_kutta_change(
             h,
             [&k1, &k2, &k3, &k4],
             VectorWithParameterDerivatives::plus_scaled,
-            VectorWithParameterDerivatives::scaled_derivatives,
+            VectorWithParameterDerivatives::scaled_with_derivatives,
         );
         Ok((configuration_derivatives(m, q, &displacement), change.by))
     }

@@ -181,7 +181,7 @@ impl<T: Real> TwiceDifferentiableStep<T> for SemiImplicitEuler<T> {
             by_v: motion.by_v,
             by_u: motion.by_u,
         };
-        let displacement = first.plus_scaled(h, &change).scaled_derivatives(h);
+        let displacement = first.plus_scaled(h, &change).scaled_with_derivatives(h);
         let moved = SecondOrderDisplacement::new(mechanism, &displacement.value);
         let of_displacement = moved.by_dv.tr_mul(by_q);
         let mut sum = now.second_order_motion(q, v, u, &((by_v + of_displacement * h) * h));
@@ -222,13 +222,14 @@ impl<T: Real> TwiceDifferentiableStep<T> for Rk4<T> {
         let (h, start) = (self.nominal_step_length(), DifferentiatedStepStart { mechanism, t, q, u });
         let half = h * constant(0.5);
         let first = VectorWithDerivatives::start_velocity_with_derivatives(v);
-        let begin = DifferentiatedStage::new(&start, T::zero(), first.scaled_derivatives(T::zero()), first);
+        let begin =
+            DifferentiatedStage::new(&start, T::zero(), first.scaled_with_derivatives(T::zero()), first);
         let next_stage = |after: T, stage: &DifferentiatedStage<T, NQ, NV, NU>| {
             let v = first.plus_scaled(after, &stage.stage_acceleration());
             DifferentiatedStage::new(
                 &start,
                 after,
-                stage.displacement_rate(&start).scaled_derivatives(after),
+                stage.displacement_rate(&start).scaled_with_derivatives(after),
                 v,
             )
         };
@@ -246,7 +247,7 @@ impl<T: Real> TwiceDifferentiableStep<T> for Rk4<T> {
                 .plus_scaled(two, &k2)
                 .plus_scaled(two, &k3)
                 .plus_scaled(T::one(), &k4)
-                .scaled_derivatives(sixth);
+                .scaled_with_derivatives(sixth);
             of_end = add_displacement_second_derivatives(mechanism, &displacement, by_q, &mut sum);
         }
         // Backwards: factors of each stage's rates, from the end of the step and from later stages.

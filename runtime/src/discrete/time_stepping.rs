@@ -146,7 +146,7 @@ impl<'a, M, const NV: usize> ConfigurationManifold<'a, M, NV> {
         let (_, by_dv) = self.mechanism.integrate_derivatives_at(q, &by.value);
         let mut end = *by;
         self.multiply_derivatives_from_left(&by_dv, &mut end);
-        self.transport_to_end(t, q, (&by.value, &end), v)
+        self.transport_velocity_to_end(t, q, (&by.value, &end), v)
     }
 
     /// Returns the axes of ball and free joints after a displacement `dv` from `q`.
@@ -159,7 +159,7 @@ impl<'a, M, const NV: usize> ConfigurationManifold<'a, M, NV> {
     where
         M: Derivatives<NQ, NV, NU, Scalar = T>,
     {
-        if self.keeps_velocities() {
+        if self.keeps_velocity_components() {
             return DisplacedAxes { dv: *dv, axes: SMatrix::identity(), by_dv: SMatrix::zeros() };
         }
         let (_, by_dv) = self.mechanism.integrate_derivatives_at(q, dv);
@@ -167,7 +167,7 @@ impl<'a, M, const NV: usize> ConfigurationManifold<'a, M, NV> {
     }
 
     /// Whether velocities have the same components in all configurations.
-    fn keeps_velocities<T: Real, const NQ: usize, const NU: usize>(&self) -> bool
+    fn keeps_velocity_components<T: Real, const NQ: usize, const NU: usize>(&self) -> bool
     where
         M: Derivatives<NQ, NV, NU, Scalar = T>,
     {
@@ -176,7 +176,7 @@ impl<'a, M, const NV: usize> ConfigurationManifold<'a, M, NV> {
 
     /// Returns a velocity in the axes after a displacement, and the derivative of its components with respect
     /// to the displacement.
-    fn transported_with_axes<T: Real, const NQ: usize, const NU: usize>(
+    fn velocity_in_displaced_axes<T: Real, const NQ: usize, const NU: usize>(
         &self,
         t: T,
         q: &SVector<T, NQ>,
@@ -187,7 +187,7 @@ impl<'a, M, const NV: usize> ConfigurationManifold<'a, M, NV> {
         M: Derivatives<NQ, NV, NU, Scalar = T>,
     {
         let mut by_dv = SMatrix::zeros();
-        if self.keeps_velocities() {
+        if self.keeps_velocity_components() {
             return (*v, by_dv);
         }
         let value = self.mechanism.carry(t, q, &displaced.dv, v);
@@ -209,7 +209,7 @@ impl<'a, M, const NV: usize> ConfigurationManifold<'a, M, NV> {
         let mut axes = SMatrix::<T, NV, NV>::identity();
         for k in self.ball_and_free_velocity_indices() {
             if let Some(column) = axes.data.0.get_mut(*k) {
-                *column = self.mechanism.carry(t, q, dv, &unit_vector(*k, T::one())).data.0[0];
+                *column = self.mechanism.carry(t, q, dv, &vector_with_single_entry(*k, T::one())).data.0[0];
             }
         }
         axes
@@ -230,7 +230,8 @@ impl<'a, M, const NV: usize> ConfigurationManifold<'a, M, NV> {
         for k in self.ball_and_free_velocity_indices() {
             // By Rodrigues' formula, half the difference of a vector rotated by right angles in both
             // directions is its cross product with the axis: the derivative of a rotation about it.
-            let transported_by_rotation = |angle: T| self.mechanism.carry(t, q, &unit_vector(*k, angle), v);
+            let transported_by_rotation =
+                |angle: T| self.mechanism.carry(t, q, &vector_with_single_entry(*k, angle), v);
             if let Some(column) = rotation.data.0.get_mut(*k) {
                 *column = ((transported_by_rotation(right_angle) - transported_by_rotation(-right_angle))
                     * constant::<T>(0.5))
@@ -254,7 +255,7 @@ impl<'a, M, const NV: usize> ConfigurationManifold<'a, M, NV> {
         let m = self.mechanism;
         acceleration.value -= m.carry_rate(t, v, v);
         for k in self.ball_and_free_velocity_indices() {
-            let unit = unit_vector(*k, T::one());
+            let unit = vector_with_single_entry(*k, T::one());
             // The rate is bilinear.
             let change = m.carry_rate(t, &unit, v) + m.carry_rate(t, v, &unit);
             if let Some(column) = acceleration.by_v.data.0.get_mut(*k) {
@@ -266,7 +267,7 @@ impl<'a, M, const NV: usize> ConfigurationManifold<'a, M, NV> {
 
     /// Returns a velocity in the axes after a displacement `dv` from `q`, given the derivatives of the motion
     /// of the displaced configuration relative to `q`.
-    pub(crate) fn transport_to_end<T: Real, const NQ: usize, const NU: usize>(
+    pub(crate) fn transport_velocity_to_end<T: Real, const NQ: usize, const NU: usize>(
         &self,
         t: T,
         q: &SVector<T, NQ>,
@@ -288,7 +289,7 @@ impl<'a, M, const NV: usize> ConfigurationManifold<'a, M, NV> {
 
     /// Returns the velocity `v` at the configuration `from`, in the axes of the configuration `to`, with its
     /// derivatives. `motion` has the derivatives of `to`; `from` is the start of the derivatives.
-    pub(crate) fn transport_between<T: Real, const NQ: usize, const NU: usize>(
+    pub(crate) fn transport_velocity_between_configurations<T: Real, const NQ: usize, const NU: usize>(
         &self,
         t: T,
         (from, v): (&SVector<T, NQ>, &VectorWithDerivatives<T, NV, NU>),
@@ -303,7 +304,7 @@ impl<'a, M, const NV: usize> ConfigurationManifold<'a, M, NV> {
         let way = self.mechanism.difference(from, to);
         let (by_q, _) = self.mechanism.integrate_derivatives_at(from, &way);
         let relative = VectorWithDerivatives { by_q: motion.by_q - by_q, ..*motion };
-        self.transport_to_end(t, from, (&way, &relative), v)
+        self.transport_velocity_to_end(t, from, (&way, &relative), v)
     }
 }
 
@@ -318,7 +319,7 @@ struct DisplacedAxes<T, const NV: usize> {
 }
 
 /// Returns a vector whose only nonzero entry is `length`, at index `k`.
-fn unit_vector<T: Real, const NV: usize>(k: usize, length: T) -> SVector<T, NV> {
+fn vector_with_single_entry<T: Real, const NV: usize>(k: usize, length: T) -> SVector<T, NV> {
     SVector::from_fn(|i, _| if i == k { length } else { T::zero() })
 }
 
@@ -386,14 +387,14 @@ where
     let (middle, [by_q, by_way]) = manifold.displacement_along_straight_lines(start.t, start.q, &way);
     let axes = manifold.axes_after_displacement(start.t, start.q, &way);
     let transported_to_middle = |x: &VectorWithDerivatives<T, NV, NU>| {
-        let (value, by_way) = manifold.transported_with_axes(start.t, start.q, &axes, &x.value);
+        let (value, by_way) = manifold.velocity_in_displaced_axes(start.t, start.q, &axes, &x.value);
         let mut transported = VectorWithDerivatives { value, ..*x };
         manifold.multiply_derivatives_from_left(&axes.axes, &mut transported);
         add_multiple(&mut transported.by_v, half, &by_way);
         transported
     };
     let rate = rate.map(transported_to_middle);
-    let (value, turned) = manifold.transported_with_axes(start.t, start.q, &axes, &v.value);
+    let (value, turned) = manifold.velocity_in_displaced_axes(start.t, start.q, &axes, &v.value);
     let mut at_middle = VectorWithDerivatives { value, by_q: zeros(), by_v: axes.axes, by_u: zeros() };
     add_multiple(&mut at_middle.by_v, half, &turned);
     let mut velocity = transported_to_middle(before);
@@ -419,12 +420,13 @@ where
     let way = at_middle.value * half;
     let (q, [to_by_q, to_by_way]) = manifold.displacement_along_straight_lines(start.t + half, &middle, &way);
     let axes = manifold.axes_after_displacement(start.t + half, &middle, &way);
-    let mut motion = at_middle.scaled_derivatives(half);
+    let mut motion = at_middle.scaled_with_derivatives(half);
     let given = rate.map(|mut rate| {
-        let (value, by_way) = manifold.transported_with_axes(start.t + half, &middle, &axes, &rate.value);
+        let (value, by_way) =
+            manifold.velocity_in_displaced_axes(start.t + half, &middle, &axes, &rate.value);
         manifold.multiply_derivatives_from_left(&axes.axes, &mut rate);
         manifold.add_rotational_block_product(&mut rate, &by_way, &motion);
-        VectorWithDerivatives { value, ..rate }.scaled_derivatives(h)
+        VectorWithDerivatives { value, ..rate }.scaled_with_derivatives(h)
     });
     manifold.multiply_derivatives_from_left(&to_by_way, &mut motion);
     let [mut from_q, mut from_v] = [by_q, by_way];
@@ -433,7 +435,8 @@ where
     to.lead(&mut from_v);
     add_multiple(&mut motion.by_q, T::one(), &from_q);
     add_multiple(&mut motion.by_v, half, &from_v);
-    let (value, by_way) = manifold.transported_with_axes(start.t + half, &middle, &axes, &at_middle.value);
+    let (value, by_way) =
+        manifold.velocity_in_displaced_axes(start.t + half, &middle, &axes, &at_middle.value);
     let mut by_end = axes.axes;
     add_multiple(&mut by_end, half, &by_way);
     manifold.multiply_derivatives_from_left(&by_end, &mut at_middle);
@@ -455,9 +458,9 @@ where
         (VectorWithDerivatives<T, NV, NU>, VectorWithDerivatives<T, NV, NU>);
     let (half, manifold) = (h * constant(0.5), ConfigurationManifold::new(start.mechanism));
     let is_plain = start.mechanism.features().is_plain();
-    let stage_state = |after: T, (rates, acceleration): &StageRates<T, NV, NU>| {
-        let (way, v) = (rates.scaled_derivatives(after), v.plus_scaled(after, acceleration));
-        let mut acceleration = start.acceleration_after(after, &start.displace_configuration(&way), &v);
+    let stage_rates = |after: T, (rates, acceleration): &StageRates<T, NV, NU>| {
+        let (way, v) = (rates.scaled_with_derivatives(after), v.plus_scaled(after, acceleration));
+        let mut acceleration = start.acceleration_after_time(after, &start.displace_configuration(&way), &v);
         let carried = rate.map(|rate| manifold.transported_velocity(start.t, start.q, &way, rate));
         if let Some(carried) = &carried {
             acceleration = acceleration.plus_scaled(T::one(), carried);
@@ -473,19 +476,19 @@ where
         ((rates, acceleration), carried)
     };
     let k1 = (*v, rate.map_or(*before, |rate| before.plus_scaled(T::one(), rate)));
-    let (k2, _) = stage_state(half, &k1);
-    let (k3, _) = stage_state(half, &k2);
-    let (k4, at_end) = stage_state(h, &k3);
+    let (k2, _) = stage_rates(half, &k1);
+    let (k3, _) = stage_rates(half, &k2);
+    let (k4, at_end) = stage_rates(h, &k3);
     let (way, change) = runge_kutta_change(
         h,
         [&k1, &k2, &k3, &k4],
         VectorWithDerivatives::plus_scaled,
-        VectorWithDerivatives::scaled_derivatives,
+        VectorWithDerivatives::scaled_with_derivatives,
     );
     StepBeforeImpulses {
         q: start.displace_configuration(&way),
         v: v.plus_scaled(T::one(), &change),
-        given: at_end.map(|rate| rate.scaled_derivatives(h)),
+        given: at_end.map(|rate| rate.scaled_with_derivatives(h)),
     }
 }
 

@@ -3,7 +3,7 @@
 
 use super::FirstOrderDerivatives;
 use super::extended::{Extended, split, with_diagonal};
-use crate::derivatives::{ByMotion, unknown_matrix};
+use crate::derivatives::{ByMotion, nan_matrix};
 use crate::{Derivatives, Mechanism, Real};
 use nalgebra::{SMatrix, SVector};
 
@@ -169,7 +169,7 @@ where
         _q: &SVector<M::Scalar, NQ>,
         _v: &SVector<M::Scalar, NE>,
     ) -> SMatrix<M::Scalar, NE, NE> {
-        unknown_matrix()
+        nan_matrix()
     }
 
     /// Returns NaN, because derivatives of momenta with respect to first-order states are not available.
@@ -179,7 +179,7 @@ where
         _q: &SVector<M::Scalar, NQ>,
         _v: &SVector<M::Scalar, NE>,
     ) -> (SMatrix<M::Scalar, NE, NE>, SMatrix<M::Scalar, NE, NE>) {
-        (unknown_matrix(), unknown_matrix())
+        (nan_matrix(), nan_matrix())
     }
 
     fn visit_constraints<V>(&self, _visitor: V) -> Option<V::Output>

@@ -1,6 +1,6 @@
 //! Step size control from error tolerances, common to all adaptive methods.
 
-use super::control::{ErrorScale, first_step};
+use super::control::{ErrorScale, first_step_length};
 use super::{Dynamics, Error, State, Step, check_positive, is_finite, project_end_of_step};
 use crate::Real;
 use crate::private::{constant, epsilon, to_f64};
@@ -159,7 +159,7 @@ impl<T: Real> AdaptiveSettings<T> {
         }
         let dimensions = system.dimensions();
         let scale = ErrorScale { relative: self.relative, absolute: self.absolute, dimensions };
-        let chosen = memory.step.unwrap_or_else(|| first_step(system, &scale, start, &acceleration));
+        let chosen = memory.step.unwrap_or_else(|| first_step_length(system, &scale, start, &acceleration));
         let mut wanted = self.limited_step_length(chosen);
         let (mut rejected, mut finite) = (false, true);
         loop {

@@ -65,7 +65,7 @@ fn elementwise_maximum<T: Real, const N: usize>(a: &SVector<T, N>, b: &SVector<T
 
 /// Returns a first step from the magnitudes of the state, its rate and the change of the rate: Hairer,
 /// Nørsett and Wanner, II.4, "Starting step size".
-pub(super) fn first_step<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+pub(super) fn first_step_length<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     scale: &ErrorScale<T>,
     start: &State<T, NQ, NV>,

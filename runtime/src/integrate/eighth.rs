@@ -3,7 +3,7 @@
 use super::adaptive::{
     AdaptiveMemory, AdaptiveSettings, StepControl, TrialStepArguments, TrialStepResult, adaptive,
 };
-use super::stages::{RungeKuttaRates, rates_at_stage, weighted_stage_rates};
+use super::stages::{RungeKuttaRates, rates_at_stage, weighted_sum_over_stage_indices};
 use super::{Dynamics, Error, Jump, Method, State, Step};
 use crate::Real;
 use crate::private::constant;
@@ -50,12 +50,13 @@ pub(super) fn trial_step<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const
 ) -> TrialStepResult<T, NQ, NV> {
     let TrialStepArguments { start, acceleration, scale, h, t } = *attempt;
     let mut k = [RungeKuttaRates { displacement: start.v, velocity: *acceleration }; 16];
-    let mut reach = |k: &mut [RungeKuttaRates<T, NV>; 16], stages: core::ops::Range<usize>| {
+    let mut evaluate_stages = |k: &mut [RungeKuttaRates<T, NV>; 16], stages: core::ops::Range<usize>| {
         let mut end = *start;
         let weights = STAGES.iter().skip(stages.start - 1);
         for ((index, weights), part) in stages.clone().zip(weights).zip(TIMES.iter().skip(stages.start)) {
             let time = if *part == 1.0 { t } else { start.t + h * constant(*part) };
-            let (rates, state) = rates_at_stage(system, start, time, &weighted_stage_rates(h, weights, k));
+            let (rates, state) =
+                rates_at_stage(system, start, time, &weighted_sum_over_stage_indices(h, weights, k));
             if let Some(place) = k.get_mut(index) {
                 *place = rates;
             }
@@ -63,19 +64,19 @@ pub(super) fn trial_step<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const
         }
         end
     };
-    reach(&mut k, 1..END);
-    let change = weighted_stage_rates(h, STAGES[END - 1], &k);
-    let end = reach(&mut k, END..END + 1);
+    evaluate_stages(&mut k, 1..END);
+    let change = weighted_sum_over_stage_indices(h, STAGES[END - 1], &k);
+    let end = evaluate_stages(&mut k, END..END + 1);
     let displacement = change.displacement;
     let mut step = Step::linear(*start, end, displacement);
-    let fifth = scale.relative_error(&step, &displacement, &weighted_stage_rates(h, FIFTH, &k));
-    let third = scale.relative_error(&step, &displacement, &weighted_stage_rates(h, THIRD, &k));
+    let fifth = scale.relative_error(&step, &displacement, &weighted_sum_over_stage_indices(h, FIFTH, &k));
+    let third = scale.relative_error(&step, &displacement, &weighted_sum_over_stage_indices(h, THIRD, &k));
     let both = fifth * fifth + third * third * constant(0.01);
     let error = if both == T::zero() { both } else { fifth * fifth / both.sqrt() };
     let after = k[END];
     if dense && error <= T::one() {
-        reach(&mut k, END + 1..16);
-        let [a, b, c, d] = TERMS.map(|weights| weighted_stage_rates(h, weights, &k));
+        evaluate_stages(&mut k, END + 1..16);
+        let [a, b, c, d] = TERMS.map(|weights| weighted_sum_over_stage_indices(h, weights, &k));
         let path_coefficients = |before: &SVector<T, NV>, change: &SVector<T, NV>, after: &SVector<T, NV>| {
             (before * h - change, change * constant::<T>(2.0) - (before + after) * h)
         };

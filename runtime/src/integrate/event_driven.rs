@@ -117,7 +117,7 @@ impl<T: Real, const NV: usize> EventMemory<T, NV> {
 
     /// Returns whether very short steps accumulate, so that the next step uses time stepping; if so,
     /// decreases their count below the threshold.
-    fn take_slowdown_by_short_steps(&mut self) -> bool {
+    fn take_request_for_time_stepping(&mut self) -> bool {
         let is_slowed_by_short_steps = self.short > SHORT_STEPS;
         if is_slowed_by_short_steps {
             self.short = SHORT_STEPS - 1;
@@ -218,7 +218,7 @@ where
         }
         let tau = mechanism.generalized_forces(now, &begin.q, &v, &inputs.evaluate(now, &begin.q, &v));
         let (mut located, mut shared) = (None, false);
-        if memory.take_slowdown_by_short_steps() {
+        if memory.take_request_for_time_stepping() {
             // The next step locates events again.
         } else if let Ok((phase, acceleration)) =
             ContactPhase::contact_phase_of_state(mechanism, now, &begin.q, &v, &tau)

@@ -67,7 +67,7 @@ impl<T: Real> ImplicitMidpoint<T> {
 
 /// Returns an improved estimate of the displacement from `q` to the midpoint after a time `half`: the
 /// displacement rate there times `half`.
-fn improved_displacement<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+fn improved_midpoint_displacement<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &D,
     q: &SVector<T, NQ>,
     way: &SVector<T, NV>,
@@ -88,7 +88,7 @@ fn solve_midpoint_equations_iteratively<T: Real, D: Dynamics<T, NQ, NV>, const N
     let mut settling = VelocityConvergenceTest::new(half);
     let mut way = v * half;
     for iterations in 0..MOST_ITERATIONS {
-        way = improved_displacement(system, &start.q, &way, &v, half);
+        way = improved_midpoint_displacement(system, &start.q, &way, &v, half);
         let q = system.integrate(&start.q, &way);
         let rate = system.momentum_rate(start.t + half, &q, &v);
         let next = system.velocity(start.t + half, &q, &(p + rate * half), &v);
@@ -98,7 +98,7 @@ fn solve_midpoint_equations_iteratively<T: Real, D: Dynamics<T, NQ, NV>, const N
         let change = largest_magnitude(&(next - v));
         v = next;
         if settling.has_converged(change, &q, &v) {
-            way = improved_displacement(system, &start.q, &way, &v, half);
+            way = improved_midpoint_displacement(system, &start.q, &way, &v, half);
             let q = system.integrate(&start.q, &way);
             return Ok((q, [way, v, system.momentum_rate(start.t + half, &q, &v)]));
         }

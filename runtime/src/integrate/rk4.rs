@@ -34,7 +34,7 @@ impl<T: Real> Rk4<T> {
 type StageRates<T, const NV: usize> = (SVector<T, NV>, SVector<T, NV>);
 
 /// Returns the rates of the state at time `h` after `start`, reached with the mean rates `mean`.
-fn rates_after<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+fn rates_at_advanced_state<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     start: &State<T, NQ, NV>,
     h: T,
@@ -60,21 +60,21 @@ pub(super) fn rk4_change<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const
     let transported_acceleration = |system: &D, displacement: &SVector<T, NV>| {
         added.map(|added| system.carry(start.t, &start.q, displacement, added))
     };
-    let add_acceleration = |(displacement, acceleration): StageRates<T, NV>,
-                            added: &Option<SVector<T, NV>>| {
+    let add_acceleration_to_rates = |(displacement, acceleration): StageRates<T, NV>,
+                                     added: &Option<SVector<T, NV>>| {
         (displacement, added.map_or(acceleration, |added| acceleration + added))
     };
-    let k1 = add_acceleration((start.v, before), &added.copied());
-    let k2 = add_acceleration(
-        rates_after(system, start, half, &k1),
+    let k1 = add_acceleration_to_rates((start.v, before), &added.copied());
+    let k2 = add_acceleration_to_rates(
+        rates_at_advanced_state(system, start, half, &k1),
         &transported_acceleration(system, &(k1.0 * half)),
     );
-    let k3 = add_acceleration(
-        rates_after(system, start, half, &k2),
+    let k3 = add_acceleration_to_rates(
+        rates_at_advanced_state(system, start, half, &k2),
         &transported_acceleration(system, &(k2.0 * half)),
     );
     let at_end = transported_acceleration(system, &(k3.0 * h));
-    let k4 = add_acceleration(rates_after(system, start, h, &k3), &at_end);
+    let k4 = add_acceleration_to_rates(rates_at_advanced_state(system, start, h, &k3), &at_end);
     let (two, sixth) = (constant::<T>(2.0), h / constant(6.0));
     let mean = ((k1.0 + k4.0 + (k2.0 + k3.0) * two) * sixth, (k1.1 + k4.1 + (k2.1 + k3.1) * two) * sixth);
     (mean, at_end)

@@ -4,7 +4,8 @@ use super::adaptive::{
     AdaptiveMemory, AdaptiveSettings, StepControl, TrialStepArguments, TrialStepResult, adaptive,
 };
 use super::rosenbrock::{
-    AccelerationJacobian, JacobianDirections, derivatives_at_step_start, elapsed_time, sampling_delay,
+    AccelerationJacobian, JacobianDirections, acceleration_jacobian_at_start, elapsed_time_on_run_clock,
+    time_derivative_sampling_delay,
 };
 use super::stages::RungeKuttaRates;
 use super::{Dynamics, Error, Jump, Method, State, Step};
@@ -155,14 +156,14 @@ fn linearize_step<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: us
     before: Option<AccelerationJacobian<T, NV>>,
 ) -> LinearisedStep<T, NV> {
     let TrialStepArguments { start, acceleration, h, .. } = *attempt;
-    let mut slopes = derivatives_at_step_start(system, start, acceleration, h, JacobianDirections::All)
+    let mut slopes = acceleration_jacobian_at_start(system, start, acceleration, h, JacobianDirections::All)
         .or(before)
         .unwrap_or(AccelerationJacobian::zero_jacobian());
     // Order 4 requires a better time derivative than a forward difference; inputs may jump at the start.
-    let later = sampling_delay(system, start.t, h);
+    let later = time_derivative_sampling_delay(system, start.t, h);
     let [first, second] = [later, later * constant(2.0)].map(|later| {
         let change = system.acceleration(start.t + later, &start.q, &start.v) - acceleration;
-        (elapsed_time(system, start.t, later), change)
+        (elapsed_time_on_run_clock(system, start.t, later), change)
     });
     let between = second.0 - first.0;
     if first.0 > T::zero() && between > T::zero() {

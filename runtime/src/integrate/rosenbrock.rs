@@ -62,7 +62,12 @@ pub(super) enum JacobianDirections {
 
 /// Returns the derivatives at the start of a step, with a zero time derivative. `None` in and near singular
 /// configurations, where branches of the motion intersect.
-pub(super) fn derivatives_at_step_start<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+pub(super) fn acceleration_jacobian_at_start<
+    T: Real,
+    D: Dynamics<T, NQ, NV>,
+    const NQ: usize,
+    const NV: usize,
+>(
     system: &mut D,
     start: &State<T, NQ, NV>,
     acceleration: &SVector<T, NV>,
@@ -108,7 +113,12 @@ pub(super) fn derivatives_at_step_start<T: Real, D: Dynamics<T, NQ, NV>, const N
 
 /// Returns the delay after the start of a step of `h` seconds at which time derivatives are sampled: a
 /// thousandth of the step, and at least several rounding units of the run's clock.
-pub(super) fn sampling_delay<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+pub(super) fn time_derivative_sampling_delay<
+    T: Real,
+    D: Dynamics<T, NQ, NV>,
+    const NQ: usize,
+    const NV: usize,
+>(
     system: &D,
     start: T,
     h: T,
@@ -119,7 +129,7 @@ pub(super) fn sampling_delay<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, c
 
 /// Returns the time from the start of a step to `later`, rounded as on the run's clock, of which
 /// accelerations are functions.
-pub(super) fn elapsed_time<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+pub(super) fn elapsed_time_on_run_clock<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &D,
     start: T,
     later: T,
@@ -190,11 +200,12 @@ impl<T: Real> Method<T> for Rosenbrock<T> {
     ) -> Result<Step<T, NQ, NV>, Error> {
         let (h, t) = equal_step_length_and_end(self.step, start.t, until)?;
         let before = system.acceleration(start.t, &start.q, &start.v);
-        let mut slopes = derivatives_at_step_start(system, start, &before, h, JacobianDirections::Allowed)
-            .or(*memory)
-            .unwrap_or(AccelerationJacobian::zero_jacobian());
-        let later = sampling_delay(system, start.t, h);
-        let passed = elapsed_time(system, start.t, later);
+        let mut slopes =
+            acceleration_jacobian_at_start(system, start, &before, h, JacobianDirections::Allowed)
+                .or(*memory)
+                .unwrap_or(AccelerationJacobian::zero_jacobian());
+        let later = time_derivative_sampling_delay(system, start.t, h);
+        let passed = elapsed_time_on_run_clock(system, start.t, later);
         if passed > T::zero() {
             slopes.by_t = (system.acceleration(start.t + later, &start.q, &start.v) - before) / passed;
         }

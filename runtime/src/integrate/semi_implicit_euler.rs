@@ -65,16 +65,16 @@ fn advance_past_singularity<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, co
     h: T,
 ) -> Option<(SVector<T, NV>, State<T, NQ, NV>)> {
     let half = h * constant(0.5);
-    let advance_by_forces = |system: &mut D, state: &State<T, NQ, NV>, h: T| {
+    let advance_velocity_by_forces = |system: &mut D, state: &State<T, NQ, NV>, h: T| {
         // Responses to forces, not to impulses: next to stiff springs, impulses of short steps would be lost
         // in rounding.
         let force = velocity_independent_forces(system, state);
         let v = state.v + system.response(state.t, &state.q, &state.v, &force) * h;
         project_end_of_step(system, State { v, ..*state }, state.t).ok()
     };
-    let later = advance_by_forces(system, start, half)?;
+    let later = advance_velocity_by_forces(system, start, half)?;
     let (way, end) = step_past_singularity(system, &later, t, h)?;
-    Some((way, advance_by_forces(system, &end, -half)?))
+    Some((way, advance_velocity_by_forces(system, &end, -half)?))
 }
 
 impl<T: Real> Method<T> for SemiImplicitEuler<T> {

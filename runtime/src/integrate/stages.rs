@@ -42,7 +42,7 @@ pub(super) fn rates_at_stage<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, c
 }
 
 /// Returns `h Σ weight · rates` over the stages with the given indices.
-pub(super) fn weighted_stage_rates<T: Real, const NV: usize, const K: usize>(
+pub(super) fn weighted_sum_over_stage_indices<T: Real, const NV: usize, const K: usize>(
     h: T,
     weights: &[(usize, f64)],
     stages: &[RungeKuttaRates<T, NV>; K],

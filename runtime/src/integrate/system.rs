@@ -431,13 +431,13 @@ where
         v: &SVector<T, NV>,
         p: &SVector<T, NV>,
     ) -> SVector<T, NV> {
-        let mut under = |tau: &SVector<T, NV>| {
+        let mut acceleration_under_forces = |tau: &SVector<T, NV>| {
             self.mechanism.try_forward_dynamics(t, q, v, tau).unwrap_or_else(|reason| {
                 self.undetermined = Some(reason);
                 SVector::repeat(constant(f64::NAN))
             })
         };
-        under(p) - under(&SVector::zeros())
+        acceleration_under_forces(p) - acceleration_under_forces(&SVector::zeros())
     }
 
     fn carry(&self, t: T, q: &SVector<T, NQ>, dv: &SVector<T, NV>, v: &SVector<T, NV>) -> SVector<T, NV> {

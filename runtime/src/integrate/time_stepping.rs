@@ -337,27 +337,27 @@ fn midpoint_step_with_contacts<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize,
     let (half, still) = (h * constant(0.5), SVector::zeros());
     let to_middle = start.v * half;
     let middle = displaced_along_straight_lines(system, (start.t, &start.q), &to_middle);
-    let velocity_at_midpoint_axes = |system: &D, x: &SVector<T, NV>| {
-        velocity_at_displaced_configuration(system, (start.t, &start.q), &to_middle, x)
+    let velocity_in_midpoint_axes = |system: &D, x: &SVector<T, NV>| {
+        velocity_in_displaced_axes(system, (start.t, &start.q), &to_middle, x)
     };
     let is_free = *rate == still;
     // Impulses keep their directions in space, like forces that act in the middle.
     let rate = if is_free { still } else { system.carry(start.t, &start.q, &to_middle, rate) };
-    let v = velocity_at_midpoint_axes(system, &(start.v + before * half)) + rate * half;
+    let v = velocity_in_midpoint_axes(system, &(start.v + before * half)) + rate * half;
     let acceleration = system.acceleration(start.t + half, &middle, &v);
     let acceleration = rate_without_axis_rotation(system, (start.t + half, &v), acceleration);
-    let v = velocity_at_midpoint_axes(system, &start.v) + (acceleration + rate) * h;
+    let v = velocity_in_midpoint_axes(system, &start.v) + (acceleration + rate) * h;
     let to_end = v * half;
-    let transported_to_step_end = |system: &D, x: &SVector<T, NV>| {
-        velocity_at_displaced_configuration(system, (start.t + half, &middle), &to_end, x)
+    let velocity_in_step_end_axes = |system: &D, x: &SVector<T, NV>| {
+        velocity_in_displaced_axes(system, (start.t + half, &middle), &to_end, x)
     };
     let given = if is_free { still } else { system.carry(start.t + half, &middle, &to_end, &rate) * h };
     let end = State {
         t,
         q: displaced_along_straight_lines(system, (start.t + half, &middle), &to_end),
-        v: transported_to_step_end(system, &v),
+        v: velocity_in_step_end_axes(system, &v),
     };
-    (end, given, transported_to_step_end(system, &acceleration))
+    (end, given, velocity_in_step_end_axes(system, &acceleration))
 }
 
 /// Returns the configuration after a displacement during which the origins of free bodies move along straight
@@ -375,7 +375,7 @@ fn displaced_along_straight_lines<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usi
 }
 
 /// Returns a velocity in the axes after a displacement; with declared generalized speeds, the same speeds.
-fn velocity_at_displaced_configuration<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+fn velocity_in_displaced_axes<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &D,
     (t, q): (T, &SVector<T, NQ>),
     displacement: &SVector<T, NV>,

@@ -59,7 +59,7 @@ fn bracket_curvature<T: Real, const N: usize>(
     factors: [FactorDerivatives<T>; 2],
 ) -> SquareBlock<T, N> {
     let two = constant::<T>(2.0);
-    let weighted_sum = |x: &[T; N]| lambda.iter().zip(x).fold(T::zero(), |sum, (l, x)| sum + *l * *x);
+    let product_with_lambda = |x: &[T; N]| lambda.iter().zip(x).fold(T::zero(), |sum, (l, x)| sum + *l * *x);
     let unit_vector = |j: usize| core::array::from_fn(|i| if i == j { T::one() } else { T::zero() });
     let sum_of_vectors = |a: [T; N], b: [T; N]| core::array::from_fn(|k| a[k] + b[k]);
     // adᵏ v, and its derivatives along each direction.
@@ -89,12 +89,12 @@ fn bracket_curvature<T: Real, const N: usize>(
             let [value, slope, curvature] = factors[k / 2 - 1];
             let bent = if i == j && i + 3 >= N { two * slope } else { T::zero() };
             total = total
-                + value * weighted_sum(&second)
+                + value * product_with_lambda(&second)
                 + slope
-                    * (squared_angle_derivative(i) * weighted_sum(&changes[k][j])
-                        + squared_angle_derivative(j) * weighted_sum(&changes[k][i]))
+                    * (squared_angle_derivative(i) * product_with_lambda(&changes[k][j])
+                        + squared_angle_derivative(j) * product_with_lambda(&changes[k][i]))
                 + (curvature * squared_angle_derivative(i) * squared_angle_derivative(j) + bent)
-                    * weighted_sum(&powers[k]);
+                    * product_with_lambda(&powers[k]);
         }
         total
     };

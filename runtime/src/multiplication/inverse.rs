@@ -138,7 +138,7 @@ impl<
                 }
             }
         } else {
-            let mut rows_of_g = transposed_rows(&g.0);
+            let mut rows_of_g = rows_from_columns(&g.0);
             for (row, k) in rows_of_g.iter_mut().zip(trunk) {
                 set_entry(row, k, T::one());
             }
@@ -173,7 +173,7 @@ impl<
 
 /// Returns the rows of a matrix as columns, in blocks of four by four, transposed in registers.
 #[inline(always)]
-fn transposed_rows<T: Real, const L: usize, const N: usize>(columns: &[[T; L]; N]) -> [[T; N]; L] {
+fn rows_from_columns<T: Real, const L: usize, const N: usize>(columns: &[[T; L]; N]) -> [[T; N]; L] {
     let mut rows = [[T::zero(); N]; L];
     let (blocks, rest) = columns.as_chunks::<4>();
     for (k, [a, b, c, d]) in blocks.iter().enumerate() {

@@ -12,7 +12,11 @@ use nalgebra::SMatrix;
 pub trait Tiling<T: Real, const N: usize> {
     /// Replaces columns by their negative products with a matrix. The columns are zero outside the given
     /// rows.
-    fn negate_products<A: Arithmetic>(matrix: &SMatrix<T, N, N>, columns: &mut [[T; N]], rows: &[usize]);
+    fn replace_by_negative_products<A: Arithmetic>(
+        matrix: &SMatrix<T, N, N>,
+        columns: &mut [[T; N]],
+        rows: &[usize],
+    );
 
     /// Adds multiples of vectors to columns, or subtracts them. Only the vectors and factors in `range` are
     /// used.
@@ -50,7 +54,11 @@ pub struct Tile<const R: usize, const E: usize, const F: usize>;
 
 impl<T: Real, const R: usize, const E: usize, const F: usize, const N: usize> Tiling<T, N> for Tile<R, E, F> {
     #[inline(always)]
-    fn negate_products<A: Arithmetic>(matrix: &SMatrix<T, N, N>, columns: &mut [[T; N]], rows: &[usize]) {
+    fn replace_by_negative_products<A: Arithmetic>(
+        matrix: &SMatrix<T, N, N>,
+        columns: &mut [[T; N]],
+        rows: &[usize],
+    ) {
         let some = multiply::<A, T, R, E, F, N, 4>(matrix, columns, rows);
         let some = multiply::<A, T, R, E, F, N, 3>(matrix, some, rows);
         let some = multiply::<A, T, R, E, F, N, 2>(matrix, some, rows);
@@ -106,11 +114,15 @@ impl<T: Real, const R: usize, const E: usize, const F: usize, const N: usize> Ti
 /// Selects the first tiling if registers hold eight numbers, otherwise the second.
 impl<T: Real, Wide: Tiling<T, N>, Narrow: Tiling<T, N>, const N: usize> Tiling<T, N> for (Wide, Narrow) {
     #[inline(always)]
-    fn negate_products<A: Arithmetic>(matrix: &SMatrix<T, N, N>, columns: &mut [[T; N]], rows: &[usize]) {
+    fn replace_by_negative_products<A: Arithmetic>(
+        matrix: &SMatrix<T, N, N>,
+        columns: &mut [[T; N]],
+        rows: &[usize],
+    ) {
         if A::WIDE {
-            Wide::negate_products::<A>(matrix, columns, rows);
+            Wide::replace_by_negative_products::<A>(matrix, columns, rows);
         } else {
-            Narrow::negate_products::<A>(matrix, columns, rows);
+            Narrow::replace_by_negative_products::<A>(matrix, columns, rows);
         }
     }
 

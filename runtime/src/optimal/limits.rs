@@ -106,7 +106,7 @@ impl<T: Real, const NU: usize> InputLimits<T, NU> {
             if slope.iter().zip(&free).all(is_still) {
                 break;
             }
-            let mut step = vector_of_free_inputs(&slope, &free);
+            let mut step = vector_with_fixed_inputs_zeroed(&slope, &free);
             let (factor, pivots) = factors(&matrix_with_fixed_inputs_masked(hessian, &free), T::zero())
                 .map_err(|input| Indefinite { input })?;
             solve(&factor, &pivots, &mut step);
@@ -131,7 +131,7 @@ impl<T: Real, const NU: usize> InputLimits<T, NU> {
 }
 
 /// Returns the vector with zeros at the inputs that are not free.
-fn vector_of_free_inputs<T: Real, const NU: usize>(
+fn vector_with_fixed_inputs_zeroed<T: Real, const NU: usize>(
     vector: &SVector<T, NU>,
     free: &[bool; NU],
 ) -> SVector<T, NU> {
@@ -188,11 +188,11 @@ pub(super) fn minimise_over_limited_inputs<T: Real, const NV: usize, const NU: u
     let (change, free) = limits.minimise_within_limits((&before.u, &hessian), &policy.change)?;
     let expected = [before.u.dot(&change), change.dot(&product(&before.uu, &change)) * constant(0.5)];
     // Inputs at their limits change the costs like a known disturbance.
-    let fixed = change - vector_of_free_inputs(&change, &free);
+    let fixed = change - vector_with_fixed_inputs_zeroed(&change, &free);
     let mut disturbance = zeros();
     add_product(&mut disturbance, &before.uu, &fixed);
     let disturbed = before.u + disturbance;
-    before.u = vector_of_free_inputs(&disturbed, &free);
+    before.u = vector_with_fixed_inputs_zeroed(&disturbed, &free);
     let Quadratic { q, v, qu, vu, uu, .. } = before;
     add_product(q, qu, &fixed);
     add_product(v, vu, &fixed);

@@ -42,7 +42,7 @@ impl EulerSequence {
                 [sb, -sa * cb, ca * cb],
             ]
         };
-        let axes = standard.own_axes::<T>();
+        let axes = standard.standard_axes_as_columns::<T>();
         Rotation3::from_matrix_unchecked(axes * Matrix3::from(own) * axes.transpose())
     }
 
@@ -65,7 +65,7 @@ impl EulerSequence {
                 ca * cb * cc - sa * sb * sc,
             )
         };
-        let u = standard.own_axes::<T>() * Vector3::from(own);
+        let u = standard.standard_axes_as_columns::<T>() * Vector3::from(own);
         UnitQuaternion::new_unchecked(Quaternion::from_parts(w, u))
     }
 
@@ -80,7 +80,7 @@ impl EulerSequence {
     ///   third angle is computed from the rotation with the first one removed.
     pub fn angles<T: Real>(self, rotation: &Rotation3<T>) -> Angles<T> {
         let standard = self.standard_sequence();
-        let axes = standard.own_axes::<T>();
+        let axes = standard.standard_axes_as_columns::<T>();
         let own = axes.transpose() * rotation.matrix() * axes;
         let ArrayStorage([[r00, r10, r20], [_, r11, r21], [r02, r12, r22]]) = own.data;
         // Numerator and denominator of the first angle, then sine and cosine of the middle one.

@@ -21,7 +21,8 @@ impl EulerSequence {
         } else {
             [Vector3::new(cb * cc, -cb * sc, sb), Vector3::new(sc, cc, o), Vector3::new(o, o, i)]
         };
-        standard.own_axes::<T>() * Matrix3::from_columns(&standard.reorder_from_standard(columns))
+        standard.standard_axes_as_columns::<T>()
+            * Matrix3::from_columns(&standard.reorder_from_standard(columns))
     }
 
     /// Returns the matrix `B` with `ω_space = B (ṫ₁, ṫ₂, ṫ₃)` at these angles, rad: the axes of the three
@@ -34,7 +35,8 @@ impl EulerSequence {
         let (o, i) = (T::zero(), T::one());
         let third = if standard.symmetric { [cb, sa * sb, -ca * sb] } else { [sb, -sa * cb, ca * cb] };
         let columns = [Vector3::new(i, o, o), Vector3::new(o, ca, sa), Vector3::from(third)];
-        standard.own_axes::<T>() * Matrix3::from_columns(&standard.reorder_from_standard(columns))
+        standard.standard_axes_as_columns::<T>()
+            * Matrix3::from_columns(&standard.reorder_from_standard(columns))
     }
 
     /// Returns the inverse of [`Self::body_rate_matrix`]: `(ṫ₁, ṫ₂, ṫ₃) = B⁻¹ ω_body`.
@@ -57,7 +59,8 @@ impl EulerSequence {
             let first = RowVector3::new(cc, -sc, o) / sine;
             [first, RowVector3::new(sc, cc, o), RowVector3::new(o, o, i) - first * sb]
         };
-        Ok(Matrix3::from_rows(&standard.reorder_from_standard(rows)) * standard.own_axes::<T>().transpose())
+        Ok(Matrix3::from_rows(&standard.reorder_from_standard(rows))
+            * standard.standard_axes_as_columns::<T>().transpose())
     }
 
     /// Returns the inverse of [`Self::space_rate_matrix`]: `(ṫ₁, ṫ₂, ṫ₃) = B⁻¹ ω_space`.
@@ -76,7 +79,8 @@ impl EulerSequence {
             (RowVector3::new(o, -sa, ca) / check_sine(cb, b)?, sb)
         };
         let rows = [RowVector3::new(i, o, o) - third * along, RowVector3::new(o, ca, sa), third];
-        Ok(Matrix3::from_rows(&standard.reorder_from_standard(rows)) * standard.own_axes::<T>().transpose())
+        Ok(Matrix3::from_rows(&standard.reorder_from_standard(rows))
+            * standard.standard_axes_as_columns::<T>().transpose())
     }
 
     /// Returns the angular velocity in body axes, rad/s, at these angles, rad, and rates, rad/s.

@@ -52,7 +52,7 @@ impl StandardSequence {
 
     /// Returns the axes of the standard sequence as columns: a right-handed signed permutation, so products
     /// with it are exact.
-    pub(super) fn own_axes<T: Real>(self) -> Matrix3<T> {
+    pub(super) fn standard_axes_as_columns<T: Real>(self) -> Matrix3<T> {
         let [first, second] = [self.first, self.second].map(|axis| match axis {
             Axis::X => Vector3::new(T::one(), T::zero(), T::zero()),
             Axis::Y => Vector3::new(T::zero(), T::one(), T::zero()),

@@ -91,7 +91,7 @@ impl RunTimes {
 }
 
 /// Returns the time of the run `elapsed` seconds after its start.
-pub(super) fn time_after<T: Real>(start: T, elapsed: f64) -> T {
+pub(super) fn time_after_start<T: Real>(start: T, elapsed: f64) -> T {
     start + constant::<T>(elapsed)
 }
 

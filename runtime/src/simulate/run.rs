@@ -1,6 +1,6 @@
 //! Execution of a run: steps of the integrator, samples, control instants and events in the order of time.
 
-use super::clock::{RunTimes, time_after};
+use super::clock::{RunTimes, time_after_start};
 use super::event::coincidence_threshold;
 use super::{
     EventHit, EventOutcome, EventSearchError, Events, Overlaps, Sample, SampleTimes, Simulation,
@@ -45,7 +45,7 @@ where
 
 /// Returns the name and the change of the entry that differs most between two vectors, if any difference is
 /// significant (see [`has_significant_difference`]).
-fn entry_with_largest_change<T: Real, const N: usize>(
+fn largest_significant_change<T: Real, const N: usize>(
     to: &SVector<T, N>,
     from: &SVector<T, N>,
     names: [&'static str; N],
@@ -116,10 +116,10 @@ fn event_search_error(reason: EventSearchError, t: f64) -> Error {
     }
 }
 
-type Memory<T, S, const NV: usize> = <S as Method<T>>::Memory<NV>;
+type MethodMemory<T, S, const NV: usize> = <S as Method<T>>::Memory<NV>;
 
 /// Result of advancing a simulation: a sample if one is due, or an error.
-type DueSample<T, const NQ: usize, const NV: usize, const NU: usize> =
+type DueSampleResult<T, const NQ: usize, const NV: usize, const NU: usize> =
     Result<Option<Sample<T, NQ, NV, NU>>, Error>;
 
 impl<M, T, I, S, E, const NQ: usize, const NV: usize, const NU: usize>
@@ -135,7 +135,7 @@ where
     /// initial progress, after checks of all settings.
     pub(super) fn initial_or_resumed_progress(
         &mut self,
-    ) -> Result<RunProgress<T, Memory<T, S, NV>, NQ, NV>, Error> {
+    ) -> Result<RunProgress<T, MethodMemory<T, S, NV>, NQ, NV>, Error> {
         if let Some(run) = self.progress.take() {
             return Ok(run);
         }
@@ -151,17 +151,17 @@ where
             return Err(Error::NotFinite { t: to_f64(start.t) });
         }
         check_unit_quaternions::<M, T, NQ, NV, NU>(&start.q, &unit)?;
-        let start = self.start_with_separated_surfaces(start)?;
+        let start = self.initial_state_with_separated_surfaces(start)?;
         let node = self.project_on_constraints(start)?;
         let t = to_f64(node.t);
-        if let Some((entry, by)) = entry_with_largest_change(&node.q, &start.q, M::CONFIGURATION)
-            .or_else(|| entry_with_largest_change(&node.v, &start.v, M::VELOCITIES))
+        if let Some((entry, by)) = largest_significant_change(&node.q, &start.q, M::CONFIGURATION)
+            .or_else(|| largest_significant_change(&node.v, &start.v, M::VELOCITIES))
         {
             return Err(Error::OffConstraints { t, entry, by });
         }
         self.events.begin(&node).map_err(|reason| event_search_error(reason, t))?;
         Ok(RunProgress {
-            clock: self.times_of_run(),
+            clock: self.sample_and_control_instants(),
             node,
             elapsed: 0.0,
             ahead: (0.0, node.t),
@@ -180,14 +180,18 @@ where
     }
 
     /// Returns the initial state with separated contact surfaces, unless overlaps are permitted.
-    fn start_with_separated_surfaces(&self, start: State<T, NQ, NV>) -> Result<State<T, NQ, NV>, Error> {
+    fn initial_state_with_separated_surfaces(
+        &self,
+        start: State<T, NQ, NV>,
+    ) -> Result<State<T, NQ, NV>, Error> {
         if !M::CONTACTING || self.overlaps == Overlaps::Keep {
             return Ok(start);
         }
         let (mechanism, State { t, q, v }) = (self.system.mechanism, start);
-        let add_time_to_error = |reason| Error::Constraint { t: to_f64(t), reason };
-        let parted =
-            mechanism.contact_start(t, &q, self.overlaps == Overlaps::Part).map_err(add_time_to_error)?;
+        let constraint_error_at_time = |reason| Error::Constraint { t: to_f64(t), reason };
+        let parted = mechanism
+            .contact_start(t, &q, self.overlaps == Overlaps::Part)
+            .map_err(constraint_error_at_time)?;
         if parted == q {
             return Ok(start);
         }
@@ -198,14 +202,14 @@ where
     /// Returns the next sample; `None` at the end of the run.
     pub(super) fn next_sample(
         &mut self,
-        run: &mut RunProgress<T, Memory<T, S, NV>, NQ, NV>,
-    ) -> DueSample<T, NQ, NV, NU> {
+        run: &mut RunProgress<T, MethodMemory<T, S, NV>, NQ, NV>,
+    ) -> DueSampleResult<T, NQ, NV, NU> {
         loop {
             let sample = match (run.step, run.firing.is_some()) {
                 (Some(step), true) => self.fire_next_event(run, &step)?,
                 (Some(step), false) => self.advance_within_step(run, &step)?,
                 _ if self.has_reached_end(run) && run.shown => return Ok(None),
-                _ => self.continue_at_node(run)?,
+                _ => self.sample_node_or_take_step(run)?,
             };
             if sample.is_some() {
                 return Ok(sample);
@@ -213,7 +217,7 @@ where
         }
     }
 
-    fn has_reached_end(&self, run: &RunProgress<T, Memory<T, S, NV>, NQ, NV>) -> bool {
+    fn has_reached_end(&self, run: &RunProgress<T, MethodMemory<T, S, NV>, NQ, NV>) -> bool {
         run.stopped || run.clock.run_duration().is_some_and(|end| run.elapsed >= end)
     }
 
@@ -232,7 +236,7 @@ where
         }
     }
 
-    fn times_of_run(&self) -> RunTimes {
+    fn sample_and_control_instants(&self) -> RunTimes {
         let (every, last) = match self.samples {
             SampleTimes::Steps => (None, None),
             SampleTimes::Every(interval) => (Some(interval), None),
@@ -248,7 +252,7 @@ where
 
     /// Returns the instant of the next sample; `None` if every step is a sample. After the last requested
     /// time, the instant is the end of the run.
-    fn next_sample_instant(&self, run: &RunProgress<T, Memory<T, S, NV>, NQ, NV>) -> Option<f64> {
+    fn next_sample_instant(&self, run: &RunProgress<T, MethodMemory<T, S, NV>, NQ, NV>) -> Option<f64> {
         let SampleTimes::At(times) = self.samples else { return run.clock.sample_instant(run.sample) };
         let end = run.clock.run_duration().unwrap_or(f64::INFINITY);
         let due = usize::try_from(run.sample).ok().and_then(|k| times.get(k));
@@ -256,7 +260,7 @@ where
     }
 
     /// Returns the time of the run at an instant.
-    fn run_time_at_instant(&self, run: &RunProgress<T, Memory<T, S, NV>, NQ, NV>, elapsed: f64) -> T {
+    fn run_time_at_instant(&self, run: &RunProgress<T, MethodMemory<T, S, NV>, NQ, NV>, elapsed: f64) -> T {
         if let SampleTimes::At(times) = self.samples
             && let Some(asked) = usize::try_from(run.sample).ok().and_then(|k| times.get(k))
             && self.time_since_start(asked) == elapsed
@@ -264,11 +268,11 @@ where
             return *asked;
         }
         let end = self.duration.filter(|_| run.clock.run_duration() == Some(elapsed));
-        end.map_or_else(|| time_after(self.start.t, elapsed), |duration| self.start.t + duration)
+        end.map_or_else(|| time_after_start(self.start.t, elapsed), |duration| self.start.t + duration)
     }
 
     /// Returns the latest instant at which the next step must end.
-    fn next_step_limit(&self, run: &RunProgress<T, Memory<T, S, NV>, NQ, NV>) -> Option<f64> {
+    fn next_step_limit(&self, run: &RunProgress<T, MethodMemory<T, S, NV>, NQ, NV>) -> Option<f64> {
         let sample = self.next_sample_instant(run).filter(|_| S::FIXED);
         let stops = [run.clock.run_duration(), run.clock.control_instant(run.control), sample];
         stops.into_iter().flatten().reduce(f64::min)
@@ -276,10 +280,10 @@ where
 
     /// Continues at a node between two steps: updates the inputs, emits the node if it is a sample, otherwise
     /// takes a step.
-    fn continue_at_node(
+    fn sample_node_or_take_step(
         &mut self,
-        run: &mut RunProgress<T, Memory<T, S, NV>, NQ, NV>,
-    ) -> DueSample<T, NQ, NV, NU> {
+        run: &mut RunProgress<T, MethodMemory<T, S, NV>, NQ, NV>,
+    ) -> DueSampleResult<T, NQ, NV, NU> {
         self.renew_control_period(run);
         let due = self.next_sample_instant(run).map_or(!run.shown, |sample| run.elapsed >= sample);
         if due {
@@ -316,7 +320,11 @@ where
     }
 
     /// Moves the progress of the run to the end of the step.
-    fn move_to_step_end(&self, run: &mut RunProgress<T, Memory<T, S, NV>, NQ, NV>, step: &Step<T, NQ, NV>) {
+    fn move_to_step_end(
+        &self,
+        run: &mut RunProgress<T, MethodMemory<T, S, NV>, NQ, NV>,
+        step: &Step<T, NQ, NV>,
+    ) {
         let (elapsed, t) = run.ahead;
         (run.node, run.elapsed, run.step, run.shown) = (step.end.with_time_replaced(t), elapsed, None, false);
     }
@@ -330,9 +338,9 @@ where
     /// Continues within a step: emits the next sample or event, otherwise advances to the end of the step.
     fn advance_within_step(
         &mut self,
-        run: &mut RunProgress<T, Memory<T, S, NV>, NQ, NV>,
+        run: &mut RunProgress<T, MethodMemory<T, S, NV>, NQ, NV>,
         step: &Step<T, NQ, NV>,
-    ) -> DueSample<T, NQ, NV, NU> {
+    ) -> DueSampleResult<T, NQ, NV, NU> {
         if run.hit.is_none() {
             self.search_next_event(run, step)?;
         }
@@ -370,14 +378,14 @@ where
     /// Searches for the first event after the current position on the step.
     fn search_next_event(
         &mut self,
-        run: &mut RunProgress<T, Memory<T, S, NV>, NQ, NV>,
+        run: &mut RunProgress<T, MethodMemory<T, S, NV>, NQ, NV>,
         step: &Step<T, NQ, NV>,
     ) -> Result<(), Error> {
         if E::COUNT == 0 {
             return Ok(());
         }
         let (system, origin, end) = (&self.system, run.node.t, step.end.with_time_replaced(run.ahead.1));
-        let state_along_step = |theta: T| {
+        let interpolated_state_or_step_end = |theta: T| {
             let state = step.at(system, theta);
             if theta < T::one() { state.with_time_replaced(origin + state.t) } else { end }
         };
@@ -388,7 +396,7 @@ where
             }
             run.hit = self
                 .events
-                .locate(&state_along_step, run.cursor, to)
+                .locate(&interpolated_state_or_step_end, run.cursor, to)
                 .map_err(|reason| event_search_error(reason, to_f64(origin)))?;
             if let Some(hit) = run.hit {
                 run.cursor = hit.theta;
@@ -403,9 +411,9 @@ where
     /// Applies the effect of the next event of an instant; after the last event, continues the run.
     fn fire_next_event(
         &mut self,
-        run: &mut RunProgress<T, Memory<T, S, NV>, NQ, NV>,
+        run: &mut RunProgress<T, MethodMemory<T, S, NV>, NQ, NV>,
         step: &Step<T, NQ, NV>,
-    ) -> DueSample<T, NQ, NV, NU> {
+    ) -> DueSampleResult<T, NQ, NV, NU> {
         let Some(mut firing) = run.firing.take() else { return Ok(None) };
         run.hit = None;
         if let Some(index) = firing.jump.take() {
@@ -426,12 +434,12 @@ where
         };
         let moment = step.end.t * constant(SOON);
         let mechanism = self.system.mechanism;
-        let advance_by_moment = |state: &State<T, NQ, NV>| {
+        let state_a_moment_later = |state: &State<T, NQ, NV>| {
             let q = mechanism.integrate(&state.q, &(state.v * moment));
             State { t: state.t + moment, q, ..*state }
         };
         let before = firing.state;
-        match self.events.act(index, &mut firing.state, &advance_by_moment) {
+        match self.events.act(index, &mut firing.state, &state_a_moment_later) {
             EventOutcome::Go => {}
             EventOutcome::Stop => firing.stopped = true,
             EventOutcome::Jump => {
@@ -458,7 +466,7 @@ where
     }
 
     /// Starts a new control period of the inputs if one is due.
-    fn renew_control_period(&mut self, run: &mut RunProgress<T, Memory<T, S, NV>, NQ, NV>) {
+    fn renew_control_period(&mut self, run: &mut RunProgress<T, MethodMemory<T, S, NV>, NQ, NV>) {
         let State { t, q, v } = run.node;
         if run.clock.control_instant(run.control).is_some_and(|control| run.elapsed >= control) {
             run.control += 1;
@@ -469,7 +477,7 @@ where
 
     fn make_sample(
         &mut self,
-        run: &mut RunProgress<T, Memory<T, S, NV>, NQ, NV>,
+        run: &mut RunProgress<T, MethodMemory<T, S, NV>, NQ, NV>,
         State { t, q, v }: State<T, NQ, NV>,
         event: Option<usize>,
     ) -> Sample<T, NQ, NV, NU> {

@@ -9,7 +9,7 @@ use std::vec::Vec;
 const TIGHT: fn() -> DormandPrince<f64> = || DormandPrince::new().tolerance(1e-13, 1e-13);
 
 /// Returns the times of the samples in a simulation of the oscillator.
-fn sample_times<S: Method<f64>>(method: S, duration: f64, interval: f64) -> Vec<f64> {
+fn sample_times_of_oscillator<S: Method<f64>>(method: S, duration: f64, interval: f64) -> Vec<f64> {
     let oscillator = harmonic_oscillator::<f64>();
     let run = simulate(&oscillator).from([1.0], [0.0]).duration(duration).sample_every(interval);
     run.method(method).map(|sample| sample.unwrap().t).collect()
@@ -21,13 +21,13 @@ fn samples_are_at_requested_times() {
     for (duration, interval, count) in [(10.0, 0.01, 1000), (1.0, 0.1, 10), (0.3, 0.1, 3), (0.7, 0.7, 1)] {
         let mut wanted: Vec<f64> = (0..count).map(expected_sample_time(interval)).collect();
         wanted.push(duration);
-        assert_eq!(sample_times(DormandPrince::new(), duration, interval), wanted);
-        assert_eq!(sample_times(Rk4::step(0.003), duration, interval), wanted);
-        assert_eq!(sample_times(ImplicitMidpoint::step(0.04), duration, interval), wanted);
-        assert_eq!(sample_times(SemiImplicitEuler::step(0.01), duration, interval), wanted);
+        assert_eq!(sample_times_of_oscillator(DormandPrince::new(), duration, interval), wanted);
+        assert_eq!(sample_times_of_oscillator(Rk4::step(0.003), duration, interval), wanted);
+        assert_eq!(sample_times_of_oscillator(ImplicitMidpoint::step(0.04), duration, interval), wanted);
+        assert_eq!(sample_times_of_oscillator(SemiImplicitEuler::step(0.01), duration, interval), wanted);
     }
-    assert_eq!(sample_times(Rk4::step(0.1), 1.0, 0.4), [0.0, 0.4, 0.8, 1.0]);
-    assert_eq!(sample_times(DormandPrince::new(), 1.0, 5.0), [0.0, 1.0]);
+    assert_eq!(sample_times_of_oscillator(Rk4::step(0.1), 1.0, 0.4), [0.0, 0.4, 0.8, 1.0]);
+    assert_eq!(sample_times_of_oscillator(DormandPrince::new(), 1.0, 5.0), [0.0, 1.0]);
 }
 
 #[test]
@@ -417,7 +417,7 @@ fn control_periods_stay_exact_in_single_precision() {
     let mass = OneDof { force: |_| 0.0, ..harmonic_oscillator::<f32>() };
     let start = 8192.0;
     let calls = Cell::new(0);
-    let count_control_calls = |_: f32, _: &_, _: &_| {
+    let call_counting_controller = |_: f32, _: &_, _: &_| {
         calls.set(calls.get() + 1);
         SVector::from([0.0])
     };
@@ -425,7 +425,7 @@ fn control_periods_stay_exact_in_single_precision() {
         .from([0.0], [1.0])
         .start_at(start)
         .duration(100.0)
-        .control_every(1e-3, count_control_calls);
+        .control_every(1e-3, call_counting_controller);
     for fixed in [true, false] {
         calls.set(0);
         let run = run.clone().sample_every(2e-3);

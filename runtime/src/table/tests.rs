@@ -11,7 +11,7 @@ fn biquadratic_function(x: f64, y: f64, z: f64) -> f64 {
     (1.0 + 2.0 * x - 0.5 * x * x) * (0.3 - y + 0.2 * y * y) + x * z - 0.7 * z * z * y
 }
 
-fn cubic_grid_table() -> Table<3> {
+fn three_axis_grid_table() -> Table<3> {
     let mut values = std::vec::Vec::new();
     for x in X {
         for y in Y {
@@ -23,7 +23,7 @@ fn cubic_grid_table() -> Table<3> {
 
 #[test]
 fn linear_table_interpolates_its_values() {
-    let table = cubic_grid_table();
+    let table = three_axis_grid_table();
     for (x, y, z) in [(0.0, 1.0, -1.0), (3.5, 4.0, 1.0), (-1.0, 0.0, -2.0)] {
         assert!((table.value::<f64>([x, y, z]) - biquadratic_function(x, y, z)).abs() < 1e-14);
     }
@@ -34,7 +34,7 @@ fn linear_table_interpolates_its_values() {
 
 #[test]
 fn smooth_table_is_exact_for_parabolas() {
-    let table = cubic_grid_table().smooth();
+    let table = three_axis_grid_table().smooth();
     for k in 0..40 {
         let t = f64::from(k) / 39.0;
         let (x, y, z) = (-1.0 + 4.5 * t, 4.0 * (1.0 - t), -2.0 + 3.0 * t * t);
@@ -68,7 +68,7 @@ fn slopes_of_a_smooth_table_are_continuous() {
 
 #[test]
 fn extrapolation_beyond_grid_is_as_selected() {
-    for table in [cubic_grid_table(), cubic_grid_table().smooth()] {
+    for table in [three_axis_grid_table(), three_axis_grid_table().smooth()] {
         let edge = table.value([3.5, 1.0, 0.0]);
         assert_eq!(table.value([9.0, 1.0, 0.0]), edge);
         assert_eq!(table.slope([9.0, 1.0, 0.0], 0), 0.0);
@@ -86,10 +86,10 @@ fn lanes_are_looked_up_separately() {
     let x = [-3.0, 0.2, 0.5, 9.0];
     let (y, z) = ([0.1, 3.0, 1.0, 1.2], [0.0, -1.5, 1.0, 0.3]);
     for table in [
-        cubic_grid_table(),
-        cubic_grid_table().smooth(),
-        cubic_grid_table().extrapolated(),
-        cubic_grid_table().smooth().extrapolated(),
+        three_axis_grid_table(),
+        three_axis_grid_table().smooth(),
+        three_axis_grid_table().extrapolated(),
+        three_axis_grid_table().smooth().extrapolated(),
     ] {
         for orders in [[0, 0, 0], [1, 0, 0], [0, 1, 1], [2, 0, 0]] {
             let all: f64x4 = table.derivative([Lanes(x), Lanes(y), Lanes(z)], orders);
@@ -105,7 +105,7 @@ fn lanes_are_looked_up_separately() {
 fn table_lookup_works_in_single_precision() {
     fn smooth_table_value<T: Real>(x: f64) -> f64 {
         let x = crate::private::constant::<T>(x);
-        crate::private::to_f64(cubic_grid_table().smooth().value([x, x, x]))
+        crate::private::to_f64(three_axis_grid_table().smooth().value([x, x, x]))
     }
     assert!((smooth_table_value::<f32>(0.7) - smooth_table_value::<f64>(0.7)).abs() < 1e-5);
 }

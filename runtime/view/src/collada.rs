@@ -197,26 +197,30 @@ fn corners_of_faces(mesh: Node<'_, '_>, list: Node<'_, '_>) -> Result<Vec<Vec<Po
 
 /// Returns the positions of vertices from the source that their `POSITION` input refers to.
 fn vertex_positions(mesh: Node<'_, '_>, vertices: Node<'_, '_>) -> Result<Vec<Point3<f64>>, String> {
-    let find_child = |of: &str, name: &str| {
+    let find_child_by_id = |of: &str, name: &str| {
         mesh.children().find(|node| node.tag_name().name() == of && node.attribute("id") == Some(name))
     };
     let name = vertices.attribute("source").unwrap_or_default();
     let missing_positions_error = || format!("no source of positions at `{name}`");
     let vertices =
-        find_child("vertices", name.trim_start_matches('#')).ok_or_else(missing_positions_error)?;
+        find_child_by_id("vertices", name.trim_start_matches('#')).ok_or_else(missing_positions_error)?;
     let input =
         child_elements(vertices, "input").find(|input| input.attribute("semantic") == Some("POSITION"));
     let source = input.and_then(|input| input.attribute("source")).unwrap_or_default();
-    let source = find_child("source", source.trim_start_matches('#')).ok_or_else(missing_positions_error)?;
+    let source =
+        find_child_by_id("source", source.trim_start_matches('#')).ok_or_else(missing_positions_error)?;
     let list: Vec<f64> =
         parse_number_list(child_element(source, "float_array").ok_or_else(missing_positions_error)?)?;
     let accessor =
         child_element(source, "technique_common").and_then(|common| child_element(common, "accessor"));
-    let read_accessor_count = |name: &str, otherwise: usize| match accessor.and_then(|a| a.attribute(name)) {
+    let accessor_attribute_or_default = |name: &str, otherwise: usize| match accessor
+        .and_then(|a| a.attribute(name))
+    {
         Some(text) => text.trim().parse().map_err(|_| format!("the `{name}` of an accessor is not a count")),
         None => Ok(otherwise),
     };
-    let (stride, offset) = (read_accessor_count("stride", 3)?, read_accessor_count("offset", 0)?);
+    let (stride, offset) =
+        (accessor_attribute_or_default("stride", 3)?, accessor_attribute_or_default("offset", 0)?);
     if stride < 3 {
         return Err("positions with fewer than three numbers".to_string());
     }

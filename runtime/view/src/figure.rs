@@ -167,10 +167,10 @@ impl Figure {
 
     /// Returns whether a shape represents the mass properties of a body whose meshes were all read.
     fn is_represented_by_meshes(&self, shape: &DrawnShape) -> bool {
-        let is_mesh_of_shape = |s: &&DrawnShape| {
+        let is_visual_mesh_of_same_body = |s: &&DrawnShape| {
             s.declared && s.role == Role::Visual && matches!(s.kind, Kind::Mesh(_)) && s.name == shape.name
         };
-        let mut meshes = self.shapes.iter().filter(is_mesh_of_shape).peekable();
+        let mut meshes = self.shapes.iter().filter(is_visual_mesh_of_same_body).peekable();
         shape.declared
             && matches!(shape.role, Role::Body | Role::Link)
             && meshes.peek().is_some()
@@ -239,7 +239,7 @@ impl Figure {
 
     /// Returns the common direction of all revolute axes of the drawing if they are parallel: the normal of a
     /// planar motion.
-    pub(crate) fn common_axis_direction(
+    pub(crate) fn common_hinge_direction(
         &self,
         turn: impl Fn(Option<usize>, Vector3<f64>) -> Vector3<f64>,
     ) -> Option<Vector3<f64>> {
@@ -254,7 +254,7 @@ impl Figure {
 impl DrawnShape {
     /// Returns the index of the first number of the shape among the numbers of the declared pieces, and the
     /// count of these numbers. An equivalent ellipsoid takes only its position from them.
-    pub(crate) fn declared_number_range(&self) -> Option<[usize; 2]> {
+    pub(crate) fn range_in_declared_numbers(&self) -> Option<[usize; 2]> {
         let count = if self.fitted { 3 } else { self.numbers.len() };
         self.first.map(|first| [first, count])
     }

@@ -282,7 +282,7 @@ fn write_action_list<T: Real, const N: usize>(
 ) {
     let x = DRAWING + 10.0;
     let mut y = 26.0;
-    let mut say = |out: &mut String, colour: &str, weight: &str, words: &str| {
+    let mut write_text_line = |out: &mut String, colour: &str, weight: &str, words: &str| {
         let words = escaped(words);
         let _ = writeln!(
             out,
@@ -290,17 +290,22 @@ fn write_action_list<T: Real, const N: usize>(
         );
         y += LINE;
     };
-    say(out, "#000", "bold", &format!("{}: points from the centre of mass", diagram.body));
+    write_text_line(out, "#000", "bold", &format!("{}: points from the centre of mass", diagram.body));
     for shown in all {
         let [point, force, torque] = shown.figures;
-        say(out, shown.colour, "bold", &format!("{} at {} m", shown.name, format_components(point)));
-        say(out, shown.colour, "normal", &format!("force {} N", format_components(force)));
-        say(out, shown.colour, "normal", &format!("torque {} N·m", format_components(torque)));
+        write_text_line(
+            out,
+            shown.colour,
+            "bold",
+            &format!("{} at {} m", shown.name, format_components(point)),
+        );
+        write_text_line(out, shown.colour, "normal", &format!("force {} N", format_components(force)));
+        write_text_line(out, shown.colour, "normal", &format!("torque {} N·m", format_components(torque)));
     }
     let (force, torque) = (vector_as_f64_array(diagram.force()), vector_as_f64_array(diagram.torque()));
-    say(out, "#000", "bold", "sum, m a and the rate of the angular momentum");
-    say(out, "#000", "normal", &format!("force {} N", format_components(force)));
-    say(out, "#000", "normal", &format!("torque {} N·m", format_components(torque)));
+    write_text_line(out, "#000", "bold", "sum, m a and the rate of the angular momentum");
+    write_text_line(out, "#000", "normal", &format!("force {} N", format_components(force)));
+    write_text_line(out, "#000", "normal", &format!("torque {} N·m", format_components(torque)));
 }
 
 /// Formats the three components of a vector, with the number of decimals that gives the largest component

@@ -84,7 +84,7 @@ where
         };
         let motion = Motion::of("", mechanism, &[neutral])?.figure(figure)?.mark_as_live();
         let frames = motion.used_frames();
-        let [plotted, _] = motion.curve_counts();
+        let [plotted, _] = motion.curve_and_input_counts();
         let server = PageServer::open_server(port, Page::new(name).motion(motion).html())?;
         Ok(Live { mechanism, frames, plotted, server, message: Vec::new(), samples: 0 })
     }

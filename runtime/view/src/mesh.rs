@@ -31,7 +31,7 @@ impl TriangleMesh {
         }
         let interpolate =
             |[low, high]: [f64; 2], k: u32| low + (high - low) * f64::from(k) / f64::from(CELLS);
-        let corner_of_grid = |j: u32, k: u32| {
+        let position_of_grid_corner = |j: u32, k: u32| {
             let (u, w) = (interpolate(u, j), interpolate(w, k));
             let place = place(u, w);
             match place.iter().all(|x| (*x as f32).is_finite()) {
@@ -42,8 +42,8 @@ impl TriangleMesh {
         let mut corners = Vec::new();
         for j in 0..CELLS {
             for k in 0..CELLS {
-                let [a, b] = [corner_of_grid(j, k)?, corner_of_grid(j + 1, k)?];
-                let [c, d] = [corner_of_grid(j + 1, k + 1)?, corner_of_grid(j, k + 1)?];
+                let [a, b] = [position_of_grid_corner(j, k)?, position_of_grid_corner(j + 1, k)?];
+                let [c, d] = [position_of_grid_corner(j + 1, k + 1)?, position_of_grid_corner(j, k + 1)?];
                 corners.extend([a, b, c, a, c, d]);
             }
         }
@@ -176,13 +176,13 @@ fn read_obj(text: &str) -> Result<TriangleMesh, String> {
         match words.next() {
             Some("v") => corners.push(parse_number_triple(words).ok_or_else(unreadable_line_error)?),
             Some("f") => {
-                let corner_of_face = |word: &str| {
+                let parse_face_corner = |word: &str| {
                     let n: i64 = word.split('/').next()?.parse().ok()?;
                     let at = if n < 0 { corners.len() as i64 + n } else { n - 1 };
                     corners.get(usize::try_from(at).ok()?).copied()
                 };
                 let face: Vec<[f32; 3]> =
-                    words.map(corner_of_face).collect::<Option<_>>().ok_or_else(unreadable_line_error)?;
+                    words.map(parse_face_corner).collect::<Option<_>>().ok_or_else(unreadable_line_error)?;
                 for pair in face.get(1..).unwrap_or_default().windows(2) {
                     mesh.corners.extend([face[0], pair[0], pair[1]]);
                 }
@@ -194,8 +194,8 @@ fn read_obj(text: &str) -> Result<TriangleMesh, String> {
 }
 
 fn parse_number_triple<'a>(mut words: impl Iterator<Item = &'a str>) -> Option<[f32; 3]> {
-    let mut next = || words.next()?.parse().ok();
-    Some([next()?, next()?, next()?])
+    let mut parse_next_number = || words.next()?.parse().ok();
+    Some([parse_next_number()?, parse_next_number()?, parse_next_number()?])
 }
 
 #[cfg(test)]

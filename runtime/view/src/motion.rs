@@ -357,7 +357,7 @@ impl Motion {
     }
 
     /// Returns the number of plotted curves, and the number of inputs.
-    pub(crate) fn curve_counts(&self) -> [usize; 2] {
+    pub(crate) fn curve_and_input_counts(&self) -> [usize; 2] {
         let inputs = self.inputs.first().map_or(0, Vec::len);
         [self.plots.iter().map(|plot| plot.curves.len()).sum(), inputs]
     }
@@ -446,7 +446,7 @@ impl Motion {
             ("live", self.live.to_string()),
             ("data", text::json(&stream.text())),
         ];
-        let source_range_json = |shape: &DrawnShape| match shape.declared_number_range() {
+        let range_in_declared_numbers_json = |shape: &DrawnShape| match shape.range_in_declared_numbers() {
             Some([first, count]) => format!("[{first},{count}]"),
             None => "null".to_string(),
         };
@@ -455,7 +455,7 @@ impl Motion {
                 ("simulated", data.clone()),
                 ("module", text::json(&base64(module))),
                 ("used", text::list(used.iter().map(ToString::to_string))),
-                ("sources", text::list(self.figure.drawn_shapes().map(source_range_json))),
+                ("sources", text::list(self.figure.drawn_shapes().map(range_in_declared_numbers_json))),
             ]
         });
         let fields: Vec<String> = fields
@@ -494,9 +494,11 @@ fn encode_curve_with_json_header(
     values: impl Iterator<Item = f64> + Clone,
     stream: &mut Stream,
 ) -> String {
-    let finite_values = || values.clone().filter(|x| x.is_finite());
-    let (low, high) =
-        (finite_values().fold(f64::INFINITY, f64::min), finite_values().fold(f64::NEG_INFINITY, f64::max));
+    let only_finite_values = || values.clone().filter(|x| x.is_finite());
+    let (low, high) = (
+        only_finite_values().fold(f64::INFINITY, f64::min),
+        only_finite_values().fold(f64::NEG_INFINITY, f64::max),
+    );
     let low = if low.is_finite() { low } else { 0.0 };
     let step = ((high - low) / LEVELS).max(f64::MIN_POSITIVE);
     let step = if high > low && step.is_finite() { step } else { 1.0 };

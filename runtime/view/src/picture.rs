@@ -87,14 +87,14 @@ fn outlines_svg(outlines: &[SolidOutline]) -> String {
     let [width, height] = SIZE;
     let scale = (0..2).map(|k| (SIZE[k] - 2.0 * MARGIN) / (high[k] - low[k]).max(1e-9));
     let scale = scale.fold(f64::INFINITY, f64::min);
-    let pixel_coordinates = |p: &[f64; 2]| {
+    let pixel_coordinates_text = |p: &[f64; 2]| {
         let x = width / 2.0 + scale * (p[0] - (low[0] + high[0]) / 2.0);
         let y = height / 2.0 - scale * (p[1] - (low[1] + high[1]) / 2.0);
         format!("{x:.1},{y:.1}")
     };
     let mut out = format!("<svg viewBox=\"0 0 {width} {height}\" role=\"img\" aria-label=\"drawing\">");
     for SolidOutline { points, colour, line, .. } in outlines {
-        let points = points.iter().map(pixel_coordinates).collect::<Vec<_>>().join(" ");
+        let points = points.iter().map(pixel_coordinates_text).collect::<Vec<_>>().join(" ");
         let _ = match *line > 0.0 {
             true => write!(
                 out,
@@ -122,14 +122,17 @@ fn shape_outline_points(shape: &DrawnShape, size: f64) -> (Vec<FramePoint>, f64)
     let n = &shape.numbers;
     let vector_at_index = |k: usize| Vector3::new(n[k], n[k + 1], n[k + 2]);
     let [a, b] = shape.frames;
-    let in_frame = |points: Vec<Vector3<f64>>| points.into_iter().map(|p| (a, p)).collect::<Vec<_>>();
+    let attach_frame_to_points =
+        |points: Vec<Vector3<f64>>| points.into_iter().map(|p| (a, p)).collect::<Vec<_>>();
     let points_of_round_solid = |half: f64, radius: f64| {
         let (axis, at) = (vector_at_index(3), vector_at_index(0));
-        in_frame([-half, half].iter().flat_map(|h| points_on_circle(at + axis * *h, axis, radius)).collect())
+        attach_frame_to_points(
+            [-half, half].iter().flat_map(|h| points_on_circle(at + axis * *h, axis, radius)).collect(),
+        )
     };
     let points_of_scaled_corners = |corners: &[[f64; 3]]| {
         let axes = Matrix3::from_row_slice(&n[3..12]);
-        in_frame(
+        attach_frame_to_points(
             corners
                 .iter()
                 .map(|c| vector_at_index(0) + axes * Vector3::from(*c).component_mul(&vector_at_index(12)))
@@ -137,7 +140,9 @@ fn shape_outline_points(shape: &DrawnShape, size: f64) -> (Vec<FramePoint>, f64)
         )
     };
     let points_of_ball = |radius: f64| {
-        in_frame(points_on_sphere().iter().map(|c| vector_at_index(0) + Vector3::from(*c) * radius).collect())
+        attach_frame_to_points(
+            points_on_sphere().iter().map(|c| vector_at_index(0) + Vector3::from(*c) * radius).collect(),
+        )
     };
     let areas = match shape.kind {
         Kind::Bar => return (vec![(a, vector_at_index(0)), (b, vector_at_index(3))], 0.018 * size),
@@ -151,7 +156,7 @@ fn shape_outline_points(shape: &DrawnShape, size: f64) -> (Vec<FramePoint>, f64)
         Kind::Capsule => points_of_round_solid(n[7] / 2.0 + n[6] / 2.0, n[6]),
         Kind::Tube => points_of_round_solid(n[8] / 2.0, n[7]),
         Kind::Cone => {
-            let mut points = in_frame(points_on_circle(
+            let mut points = attach_frame_to_points(points_on_circle(
                 vector_at_index(0) - vector_at_index(3) * (n[7] / 4.0),
                 vector_at_index(3),
                 n[6],

@@ -59,7 +59,7 @@ impl CameraView {
             [start.size_of_bounds(), whole.size_of_bounds()].into_iter().find(is_valid_size).unwrap_or(1.0);
         let rotate_to_world =
             |frame: Option<usize>, v: Vector3<f64>| frame.map_or(v, |f| first[f].rotation * v);
-        let normal = figure.common_axis_direction(rotate_to_world).filter(|n| n.dot(&up).abs() < 1e-6);
+        let normal = figure.common_hinge_direction(rotate_to_world).filter(|n| n.dot(&up).abs() < 1e-6);
         let is_fixed_terrain =
             |s: &&DrawnShape| s.role == Role::Surface && s.mesh.is_some() && s.frames[0].is_none();
         let hills = pieces.iter().any(is_fixed_terrain);

@@ -38,13 +38,14 @@ fn decoded_samples_match_to_half_a_step() {
         for (n, name) in motion["frames"].as_array().unwrap().iter().enumerate() {
             let frame = index_of(&Humanoid::FRAMES, name.as_str().unwrap()).unwrap();
             let placement = Humanoid.frame_placements(&sample.q)[frame];
-            let read_channel = |j: usize| channels[1 + 7 * n + j][k] as f64;
+            let frame_channel_value = |j: usize| channels[1 + 7 * n + j][k] as f64;
             for j in 0..3 {
                 assert!(
-                    (read_channel(j) * quantum - placement.translation.vector[j]).abs() <= quantum * 0.51
+                    (frame_channel_value(j) * quantum - placement.translation.vector[j]).abs()
+                        <= quantum * 0.51
                 );
             }
-            let [x, y, z, w] = [3, 4, 5, 6].map(|j| read_channel(j) * turn);
+            let [x, y, z, w] = [3, 4, 5, 6].map(|j| frame_channel_value(j) * turn);
             let read = UnitQuaternion::from_quaternion(linkwork::nalgebra::Quaternion::new(w, x, y, z));
             // Four entries with an error of half a step each; the rotation angle is twice that of the
             // quaternion.

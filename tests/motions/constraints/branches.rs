@@ -5,10 +5,10 @@
 mod branch;
 mod machines;
 
-use branch::{Branch, flat_branch_angles};
+use branch::{Branch, branch_angles_of_singular_linkage};
 use linkwork::integrate::Method;
 use linkwork::prelude::*;
-use machines::{FourBar, MagnitudeRanges, Row, StackedWindows, Tilted};
+use machines::{FourBar, MagnitudeRanges, RowOfWindows, StackedWindows, Tilted};
 use std::f64::consts::PI;
 use support::random::Random;
 
@@ -54,8 +54,8 @@ fn random_angle_near_singularity(random: &mut Random, flat: f64) -> (f64, f64) {
 /// Returns the lengths of a linkage that is singular at a crank angle of `π` or zero, whether it is `π`, and
 /// the angle.
 fn lengths_of_singular_linkage(random: &mut Random) -> ([f64; 4], bool, f64) {
-    let mut length = || 1.0 + random.uniform_number(0.7);
-    let (base, l1, l2) = (length(), length(), length());
+    let mut random_length = || 1.0 + random.uniform_number(0.7);
+    let (base, l1, l2) = (random_length(), random_length(), random_length());
     let (outer, inner) = (base + l1 - l2, l2 - (l1 - base).abs());
     // In a folded kite the coupler rotates alone, or coupler and crank, while the other links are at rest.
     if random.uniform_number(1.0) > 0.5 {
@@ -76,7 +76,7 @@ fn parallelogram_branch(angle: f64, rate: f64) -> Branch<3, 1> {
 }
 
 fn singular_linkage_branch(lengths: [f64; 4], at_pi: bool, side: f64, angle: f64, rate: f64) -> Branch<3, 1> {
-    let jets = flat_branch_angles(lengths, at_pi, angle, side);
+    let jets = branch_angles_of_singular_linkage(lengths, at_pi, angle, side);
     let coefficients_of_jets = |k: usize| SVector::<f64, 3>::from_fn(|i, _| jets[i].0[k]);
     Branch {
         q: coefficients_of_jets(0),
@@ -125,12 +125,12 @@ fn singular_linkages_accelerate_along_their_assembly_mode() {
     check_random_branches("four-bar", 4000, |random, style| {
         let (lengths, at_pi, angle) = lengths_of_singular_linkage(random);
         let side = random.uniform_number(1.0).signum();
-        let mut approach = || {
+        let mut random_branch_near_singularity = || {
             let (theta, rate) = random_angle_near_singularity(random, angle);
             (theta, rate, singular_linkage_branch(lengths, at_pi, side, theta, rate))
         };
         // A crank that is too long for the other lengths does not reach every angle.
-        let (theta, rate, branch) = std::iter::repeat_with(&mut approach)
+        let (theta, rate, branch) = std::iter::repeat_with(&mut random_branch_near_singularity)
             .find(|(.., branch)| branch.q.iter().chain(&branch.bend).all(|x| x.is_finite()))
             .expect("the flat position itself is reached");
         let tilted = Tilted::random_instance(random, style, lengths);
@@ -147,13 +147,13 @@ fn row_of_parallelograms_accelerates_like_a_pendulum() {
         let (angle, rate) = random_angle_near_singularity(random, flat);
         let by = SVector::from([1.0, -1.0, 1.0, -1.0, 1.0, -1.0, 1.0]);
         let branch = Branch { q: by * angle, by, bend: SVector::zeros(), rate: [rate].into() };
-        let mut length = || 1.0 + random.uniform_number(0.7);
-        let (post, w1, w2, w3) = (length(), length(), length(), length());
+        let mut random_length = || 1.0 + random.uniform_number(0.7);
+        let (post, w1, w2, w3) = (random_length(), random_length(), random_length(), random_length());
         let turn = random.uniform_number(PI);
         let [m1, m2, m3, m4] = core::array::from_fn(|_| style.random_mass(random));
         let [k1, k2, k3] = core::array::from_fn(|_| style.random_stiffness(random));
         let (aside, down) = (9.81 * turn.sin(), 9.81 * turn.cos());
-        let row = Row { down, aside, post, w1, w2, w3, m1, m2, m3, m4, k1, k2, k3 };
+        let row = RowOfWindows { down, aside, post, w1, w2, w3, m1, m2, m3, m4, k1, k2, k3 };
         (
             acceleration_error(&row, &branch),
             format!("at {:e} from {flat}, {rate} rad/s, {row:?}", angle - flat),
@@ -162,8 +162,8 @@ fn row_of_parallelograms_accelerates_like_a_pendulum() {
 }
 
 fn random_stacked_windows(random: &mut Random, style: &MagnitudeRanges) -> StackedWindows {
-    let mut length = || 1.0 + random.uniform_number(0.7);
-    let (low, high, width, shelf) = (length(), length(), length(), length());
+    let mut random_length = || 1.0 + random.uniform_number(0.7);
+    let (low, high, width, shelf) = (random_length(), random_length(), random_length(), random_length());
     let turn = random.uniform_number(PI);
     let [m1, m2, m3, m4, m5, m6] = core::array::from_fn(|_| style.random_mass(random));
     let [k1, k2, k3, k4] = core::array::from_fn(|_| style.random_stiffness(random));

@@ -26,7 +26,7 @@ struct FourBar {
 
 /// Pendulum in Cartesian coordinates of a plane, with the length of the rod as a constraint.
 #[mechanism(gravity = -9.81 * y)]
-struct Bob {
+struct CartesianPendulum {
     #[particle(mass = 1)]
     bob: Particle,
     #[joint(ground -> bob, along = (x, y))]
@@ -48,7 +48,7 @@ struct BodyHungOnRod {
 
 /// Disk with quaternion coordinates that rolls on a plane.
 #[mechanism(gravity = -9.81 * z)]
-struct FreeDisk {
+struct FreeDiskRollingOnPlane {
     #[body(mass = 2, inertia = disk(2, 0.4, y))]
     disk: Body,
     #[joint(ground -> disk)]
@@ -61,14 +61,14 @@ const DISK: RollingDisk = RollingDisk { g: 9.81, m: 2.0, radius: 0.4 };
 const BOWL: BallInBowl = BallInBowl { g: 9.81, mass: 0.3, radius: 0.05, bowl: 0.45 };
 
 /// Mechanism with the initial state of a long run.
-struct Start<'m, M, const NQ: usize, const NV: usize> {
+struct MechanismWithStart<'m, M, const NQ: usize, const NV: usize> {
     m: &'m M,
     q: SVector<f64, NQ>,
     v: SVector<f64, NV>,
 }
 
-impl<'m, M, const NQ: usize, const NV: usize> Start<'m, M, NQ, NV> {
-    fn near_guess<const NU: usize, const NH: usize, const NC: usize>(
+impl<'m, M, const NQ: usize, const NV: usize> MechanismWithStart<'m, M, NQ, NV> {
+    fn assemble_near_guess<const NU: usize, const NH: usize, const NC: usize>(
         m: &'m M,
         q: [f64; NQ],
         v: [f64; NV],
@@ -143,12 +143,13 @@ fn constrained_steps_have_orders_one_and_two() {
         })+};
     }
     check! {
-        Start::near_guess(&Bob {}, [0.6, -0.8], [0.4, 0.3]), 5e-3;
-        Start::near_guess(&FourBar {}, [1.2, -1.0, 1.4], [2.0, 0.0, 0.0]), 5e-3;
-        Start::near_guess(&BodyHungOnRod {},
+        MechanismWithStart::assemble_near_guess(&CartesianPendulum {}, [0.6, -0.8], [0.4, 0.3]), 5e-3;
+        MechanismWithStart::assemble_near_guess(&FourBar {}, [1.2, -1.0, 1.4], [2.0, 0.0, 0.0]), 5e-3;
+        MechanismWithStart::assemble_near_guess(&BodyHungOnRod {},
             [0.0, 0.1, -1.0, 0.0, 0.1, 0.1, 0.98], [0.5, 0.2, 0.0, 1.0, 2.0, -1.0]), 5e-3;
-        Start::near_guess(&DISK, [0.0, 0.0, 0.4, 0.5, 0.3, 0.7], [0.0, 0.0, 0.0, 0.5, 0.3, 6.0]), 2.5e-3;
-        Start::near_guess(&BOWL,
+        MechanismWithStart::assemble_near_guess(&DISK, [0.0, 0.0, 0.4, 0.5, 0.3, 0.7], [0.0, 0.0, 0.0, 0.5,
+            0.3, 6.0]), 2.5e-3;
+        MechanismWithStart::assemble_near_guess(&BOWL,
             [0.2, 0.1, -0.33, 0.5, 0.5, -0.5, 0.5], [0.5, 0.2, 0.0, 1.0, 2.0, -1.0]), 5e-3;
     }
 }
@@ -168,12 +169,13 @@ fn constrained_energy_does_not_drift() {
         })+};
     }
     check! {
-        Start::near_guess(&Bob {}, [0.6, -0.8], [0.4, 0.3]), 1e-2, 1e-4;
-        Start::near_guess(&FourBar {}, [1.2, -1.0, 1.4], [2.0, 0.0, 0.0]), 0.3, 4e-2;
-        Start::near_guess(&DISK, [0.0, 0.0, 0.4, 0.5, 0.3, 0.7], [0.0, 0.0, 0.0, 0.5, 0.3, 6.0]), 0.1, 1e-2;
-        Start::near_guess(&FreeDisk {},
+        MechanismWithStart::assemble_near_guess(&CartesianPendulum {}, [0.6, -0.8], [0.4, 0.3]), 1e-2, 1e-4;
+        MechanismWithStart::assemble_near_guess(&FourBar {}, [1.2, -1.0, 1.4], [2.0, 0.0, 0.0]), 0.3, 4e-2;
+        MechanismWithStart::assemble_near_guess(&DISK, [0.0, 0.0, 0.4, 0.5, 0.3, 0.7], [0.0, 0.0, 0.0, 0.5,
+            0.3, 6.0]), 0.1, 1e-2;
+        MechanismWithStart::assemble_near_guess(&FreeDiskRollingOnPlane {},
             [0.0, 0.0, 0.39, 0.2, 0.0, 0.0, 0.98], [0.0, 0.0, 0.0, 0.3, 6.0, 0.5]), 0.1, 1e-2;
-        Start::near_guess(&BOWL,
+        MechanismWithStart::assemble_near_guess(&BOWL,
             [0.2, 0.1, -0.33, 0.5, 0.5, -0.5, 0.5], [0.5, 0.2, 0.0, 1.0, 2.0, -1.0]), 2e-3, 1e-4;
     }
 }
@@ -181,7 +183,7 @@ fn constrained_energy_does_not_drift() {
 /// A pendulum of 1 m released at 0.6 rad never moves faster than √(2 g (1 − cos 0.6)) = 1.85 m/s.
 #[test]
 fn constrained_pendulum_gains_no_energy() {
-    let pendulum = Bob {};
+    let pendulum = CartesianPendulum {};
     let run = simulate(&pendulum).from([0.6_f64.sin(), -0.6_f64.cos()], [0.0, 0.0]).duration(100.0);
     for sample in run.method(SemiImplicitEuler::step(0.01)) {
         assert!(sample.expect("it swings").v.norm() < 1.9);
@@ -191,7 +193,7 @@ fn constrained_pendulum_gains_no_energy() {
 /// A four-bar linkage with 26.8 J keeps its energy; it once gained 0.19 J in 4 s and 45 J in 12 s.
 #[test]
 fn four_bar_linkage_conserves_energy() {
-    let start = Start::near_guess(&FourBar {}, [1.2, -1.0, 1.4], [2.0, 0.0, 0.0]);
+    let start = MechanismWithStart::assemble_near_guess(&FourBar {}, [1.2, -1.0, 1.4], [2.0, 0.0, 0.0]);
     let (worst, _) = start.energy_errors(ImplicitMidpoint::step(1e-3), 1e-3, 12_000);
     assert!(worst[1] < 1e-2, "{worst:?}");
 }
@@ -199,8 +201,9 @@ fn four_bar_linkage_conserves_energy() {
 /// Backward integration returns to the start, for loops, quaternions and rolling.
 #[test]
 fn midpoint_rule_is_reversible() {
-    fn check_reversibility<M, const NQ: usize, const NV: usize, const NU: usize>(start: &Start<'_, M, NQ, NV>)
-    where
+    fn check_reversibility<M, const NQ: usize, const NV: usize, const NU: usize>(
+        start: &MechanismWithStart<'_, M, NQ, NV>,
+    ) where
         M: Mechanism<NQ, NV, NU, Scalar = f64>,
     {
         let method = ImplicitMidpoint::step(0.01);
@@ -211,14 +214,18 @@ fn midpoint_rule_is_reversible() {
         let off = start.m.difference(&start.q, &back.q).amax().max((back.v + start.v).amax());
         assert!(off < 1e-9, "{off:e}");
     }
-    check_reversibility(&Start::near_guess(&FourBar {}, [1.2, -1.0, 1.4], [2.0, 0.0, 0.0]));
-    check_reversibility(&Start::near_guess(
+    check_reversibility(&MechanismWithStart::assemble_near_guess(
+        &FourBar {},
+        [1.2, -1.0, 1.4],
+        [2.0, 0.0, 0.0],
+    ));
+    check_reversibility(&MechanismWithStart::assemble_near_guess(
         &BodyHungOnRod {},
         [0.0, 0.1, -1.0, 0.0, 0.1, 0.1, 0.98],
         [0.5, 0.2, 0.0, 1.0, 2.0, -1.0],
     ));
-    check_reversibility(&Start::near_guess(
-        &FreeDisk {},
+    check_reversibility(&MechanismWithStart::assemble_near_guess(
+        &FreeDiskRollingOnPlane {},
         [0.0, 0.0, 0.39, 0.2, 0.0, 0.0, 0.98],
         [0.0, 0.0, 0.0, 0.3, 6.0, 0.5],
     ));
@@ -227,7 +234,7 @@ fn midpoint_rule_is_reversible() {
 /// Steps that are too long for the curvature of the constraints return an error.
 #[test]
 fn overlong_constrained_steps_are_errors() {
-    let pendulum = Bob {};
+    let pendulum = CartesianPendulum {};
     let simulate_pendulum = || simulate(&pendulum).from([1.0, 0.0], [0.0, 50.0]).duration(10.0);
     for end in [
         simulate_pendulum().method(ImplicitMidpoint::step(1.0)).finish(),
@@ -241,7 +248,7 @@ fn overlong_constrained_steps_are_errors() {
 /// methods.
 #[test]
 fn midpoint_rule_integrates_constraint_feedback() {
-    let pendulum = Bob {};
+    let pendulum = CartesianPendulum {};
     let steady = linkwork::constraint::stabilized(&pendulum, 20.0);
     let steady_linkage_run = || simulate(&steady).from([0.6, -0.8], [0.4, 0.3]).duration(1.0);
     let exact = steady_linkage_run()
@@ -256,11 +263,13 @@ fn midpoint_rule_integrates_constraint_feedback() {
 #[test]
 fn constrained_rollout_states_are_independent() {
     let linkage = FourBar {};
-    let states: Vec<_> =
-        [1.2, 1.3, 1.5].map(|crank| Start::near_guess(&linkage, [crank, -1.0, 1.4], [2.0, 0.0, 0.0])).into();
-    let entries_of_all_states = |entry: &dyn Fn(&Start<'_, FourBar, 3, 3>, usize) -> f64| -> Vec<f64> {
-        (0..3).flat_map(|i| states.iter().map(move |s| entry(s, i))).collect()
-    };
+    let states: Vec<_> = [1.2, 1.3, 1.5]
+        .map(|crank| MechanismWithStart::assemble_near_guess(&linkage, [crank, -1.0, 1.4], [2.0, 0.0, 0.0]))
+        .into();
+    let entries_of_all_states =
+        |entry: &dyn Fn(&MechanismWithStart<'_, FourBar, 3, 3>, usize) -> f64| -> Vec<f64> {
+            (0..3).flat_map(|i| states.iter().map(move |s| entry(s, i))).collect()
+        };
     let (mut q, mut v) = (entries_of_all_states(&|s, i| s.q[i]), entries_of_all_states(&|s, i| s.v[i]));
     let rollout = Rollout::new(SemiImplicitEuler::step(1e-3), 200);
     linkage

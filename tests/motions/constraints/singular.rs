@@ -87,7 +87,7 @@ fn accelerations_are_continuous_through_singularities() {
 
 /// Returns the distance between the top of a post at this angle and the exact position of the first post's
 /// top after ten seconds.
-fn distance_from_post_top(angle: f64) -> f64 {
+fn post_top_position_error(angle: f64) -> f64 {
     // IFToMM benchmark A02, integrated in 160 bits.
     (angle.sin() + 0.328_458_111_540_815).hypot(angle.cos() - 0.944_518_538_078_601)
 }
@@ -98,7 +98,7 @@ fn errors_of_window_motion<M: Method<f64>>(method: M) -> (f64, f64) {
     let total_energy =
         |q: &SVector<f64, 5>, v: &SVector<f64, 5>| WINDOWS.kinetic_energy(q, v) + WINDOWS.potential_energy(q);
     let end = simulate(&WINDOWS).from(q, v).method(method).duration(10.0).finish().expect("it turns on");
-    (distance_from_post_top(end.q[0]), (total_energy(&end.q, &end.v) - total_energy(&q, &v)).abs())
+    (post_top_position_error(end.q[0]), (total_energy(&end.q, &end.v) - total_energy(&q, &v)).abs())
 }
 
 #[test]
@@ -112,7 +112,7 @@ fn runge_kutta_keeps_its_order_through_singularities() {
 /// Pendulum that is dynamically equivalent to the linkage of windows: it has the same inertia and the same
 /// moment of its weight.
 #[mechanism(gravity = -9.81 * y)]
-struct Swing {
+struct EquivalentPendulum {
     #[body(mass = 49 / 9, com = 9 / 14 * y, inertia = rod(49 / 9, 9 / 7, y))]
     rod: Body,
     #[joint(ground -> rod, about = z)]
@@ -121,11 +121,11 @@ struct Swing {
 
 /// Returns the same errors as [`errors_of_window_motion`], for the equivalent pendulum.
 fn pendulum_errors<M: Method<f64>>(method: M) -> (f64, f64) {
-    let swing = Swing {};
+    let swing = EquivalentPendulum {};
     let total_energy = |q: &_, v: &_| swing.kinetic_energy(q, v) + swing.potential_energy(q);
     let (q, v) = (SVector::from([0.0]), SVector::from([-1.0]));
     let end = simulate(&swing).from(q, v).method(method).duration(10.0).finish().expect("it turns on");
-    (distance_from_post_top(end.q[0]), (total_energy(&end.q, &end.v) - total_energy(&q, &v)).abs())
+    (post_top_position_error(end.q[0]), (total_energy(&end.q, &end.v) - total_energy(&q, &v)).abs())
 }
 
 /// Implicit methods have the accuracy of the equivalent pendulum while the windows pass their singular

@@ -1,7 +1,7 @@
 //! Checks of contacts at random states, including pathological ones. Results are finite and satisfy the
 //! contact conditions, or are errors.
 
-use super::laws::{Chain, Pile, Random};
+use super::laws::{DoublePendulumAboveFloor, Pile, Random};
 use linkwork::contact::{self, Contacts};
 use linkwork::prelude::*;
 use linkwork::simulate::Overlaps;
@@ -9,7 +9,7 @@ use linkwork::simulate::Overlaps;
 /// Block with the same floor and the same wall declared twice: the distribution of forces over contacts is
 /// not unique.
 #[mechanism(gravity = -9.81 * z)]
-struct Twice {
+struct BlockWithDoubledContacts {
     friction: f64,
     restitution: f64,
     #[body(mass = 2, com = 0.02 * x, inertia = cuboid(2, 0.3, 0.2, 0.1))]
@@ -121,7 +121,7 @@ pub fn check_random_states(seed: u64, count: usize) -> usize {
     let (mut random, mut errors) = (Random(seed), 0);
     for _ in 0..count {
         let (friction, restitution) = random_contact_coefficients(&mut random);
-        let m = Twice { friction, restitution };
+        let m = BlockWithDoubledContacts { friction, restitution };
         let mut q = m.neutral();
         q[2] = 0.05 + random.random_choice([0.0, 0.0, -1e-3, 1e-9, 0.1]);
         q[0] = random.random_choice([0.0, 1.0, -1e-12]);
@@ -156,7 +156,11 @@ pub fn check_random_states(seed: u64, count: usize) -> usize {
         errors += check_impact_and_steps(&m, q, random.random_vector(speed));
 
         let (a, b) = (random.next() * 3.0, random.next() * 3.0);
-        let m = Chain { friction, restitution, height: -(0.5 * a.sin() + 0.5 * (a + b).sin()) };
+        let m = DoublePendulumAboveFloor {
+            friction,
+            restitution,
+            height: -(0.5 * a.sin() + 0.5 * (a + b).sin()),
+        };
         errors += check_impact_and_steps(&m, [a, b].into(), random.random_vector(3.0));
 
         let m = PendulumBetweenStops { gap: random.random_choice([1e-300, 1e-12, 1e-6, 0.3]), restitution };
@@ -169,7 +173,7 @@ pub fn check_random_states(seed: u64, count: usize) -> usize {
 /// sixteen points; neither gradient methods nor a gradual increase of friction find this solution.
 #[test]
 fn block_rotates_about_two_of_many_contact_points() {
-    let m = Twice { friction: 54254.21780149019, restitution: 1.0 };
+    let m = BlockWithDoubledContacts { friction: 54254.21780149019, restitution: 1.0 };
     let q = [-1e-12, 0.0, 0.05, -1.2038604637858707e-13, 3.528791029535654e-13, 2.2409312509628288e-13, 1.0]
         .into();
     let v = [

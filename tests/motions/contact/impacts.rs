@@ -1,6 +1,6 @@
 //! Random impacts satisfy complementarity, friction cones, energy and momentum conditions.
 
-use super::laws::{Chain, Pile, Random, check_impact_conditions};
+use super::laws::{DoublePendulumAboveFloor, Pile, Random, check_impact_conditions};
 use linkwork::prelude::*;
 
 #[mechanism(gravity = -9.81 * z)]
@@ -63,7 +63,7 @@ fn double_pendulum_impact_gains_no_energy() {
         let (a, b) = (random.next() * 3.0, random.next() * 3.0);
         let q = SVector::from([a, b]);
         let height = -(0.5 * a.sin() + 0.5 * (a + b).sin());
-        let m = Chain {
+        let m = DoublePendulumAboveFloor {
             friction: random.random_choice([0.0, 0.3, 0.7]),
             restitution: random.random_choice([0.5, 0.9, 1.0]),
             height,

@@ -1,6 +1,6 @@
 //! Time stepping with the midpoint rule: order, energy, and the contact conditions.
 
-use super::laws::Chain;
+use super::laws::DoublePendulumAboveFloor;
 use linkwork::contact;
 use linkwork::prelude::*;
 
@@ -17,7 +17,7 @@ struct Block {
 
 /// Cart on a spring, with a stop that it does not reach.
 #[mechanism]
-struct Cart {
+struct CartWithUnreachedStop {
     #[body(mass = 2)]
     cart: Body,
     #[joint(ground -> cart, along = x)]
@@ -44,7 +44,7 @@ macro_rules! error {
 
 #[test]
 fn midpoint_steps_between_impacts_have_order_two() {
-    let chain = Chain { friction: 0.5, restitution: 0.5, height: 5.0 };
+    let chain = DoublePendulumAboveFloor { friction: 0.5, restitution: 0.5, height: 5.0 };
     let swing = (SVector::from([0.3, -0.8]), SVector::from([1.0, 2.0]));
     let block = Block {};
     let mut q = block.neutral();
@@ -64,7 +64,7 @@ fn midpoint_steps_between_impacts_have_order_two() {
 /// number of oscillations.
 #[test]
 fn midpoint_energy_of_oscillations_does_not_drift() {
-    let (m, h) = (Cart {}, 0.01);
+    let (m, h) = (CartWithUnreachedStop {}, 0.01);
     let run = simulate(&m).from([1.0], [0.0]).method(TimeStepping::step(h).midpoint());
     let part = 4.0 * h * h;
     let samples: Vec<_> = run.sample_every(50.0).duration(2000.0).map(|sample| sample.unwrap()).collect();

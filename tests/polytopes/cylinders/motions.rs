@@ -34,12 +34,12 @@ fn configuration(place: [f64; 3], rotation: UnitQuaternion<f64>) -> SVector<f64,
 }
 
 /// Returns the rotation that turns the axis of the can into the z axis.
-fn upright() -> UnitQuaternion<f64> {
+fn upright_rotation() -> UnitQuaternion<f64> {
     UnitQuaternion::from_euler_angles(core::f64::consts::FRAC_PI_2, 0.0, 0.0)
 }
 
 /// Returns the number of gaps of a contact that are zero, up to rounding errors.
-fn closed_count(name: &str, q: &SVector<f64, 7>) -> usize {
+fn zero_gap_count(name: &str, q: &SVector<f64, 7>) -> usize {
     let gaps = Cans { friction: 0.5 }.contact_gaps(q);
     let own = Cans::CONTACTS.iter().zip(gaps.iter());
     own.filter(|(contact, gap)| contact.split('.').next() == Some(name) && gap.abs() < 1e-9).count()
@@ -51,14 +51,14 @@ fn numbers_of_contact_points_follow_from_the_geometry() {
     let level = UnitQuaternion::identity();
     let across = UnitQuaternion::from_euler_angles(0.0, 0.0, 1.2);
     let lower = [0.3 * 0.6, 0.0, 0.3 * 0.8];
-    assert_eq!(closed_count("drum", &configuration([0.0, 0.0, 0.3], level)), 2);
-    assert_eq!(closed_count("drum", &configuration([0.0, 0.1, 0.3], level)), 2);
-    assert_eq!(closed_count("drum", &configuration(lower, level)), 2);
-    assert_eq!(closed_count("drum", &configuration([0.0, 0.0, 0.3], across)), 1);
-    assert_eq!(closed_count("slab", &configuration([3.0, 0.0, 0.1], level)), 2);
-    assert_eq!(closed_count("slab", &configuration([3.05, 0.2, 0.1], across)), 2);
-    assert!(closed_count("slab", &configuration([3.0, 0.0, 0.15], upright())) >= 4);
-    assert!(closed_count("slab", &configuration([3.25, 0.1, 0.15], upright())) >= 4);
+    assert_eq!(zero_gap_count("drum", &configuration([0.0, 0.0, 0.3], level)), 2);
+    assert_eq!(zero_gap_count("drum", &configuration([0.0, 0.1, 0.3], level)), 2);
+    assert_eq!(zero_gap_count("drum", &configuration(lower, level)), 2);
+    assert_eq!(zero_gap_count("drum", &configuration([0.0, 0.0, 0.3], across)), 1);
+    assert_eq!(zero_gap_count("slab", &configuration([3.0, 0.0, 0.1], level)), 2);
+    assert_eq!(zero_gap_count("slab", &configuration([3.05, 0.2, 0.1], across)), 2);
+    assert!(zero_gap_count("slab", &configuration([3.0, 0.0, 0.15], upright_rotation())) >= 4);
+    assert!(zero_gap_count("slab", &configuration([3.25, 0.1, 0.15], upright_rotation())) >= 4);
 }
 
 /// Cans stand and lie on the slab without motion, also beyond its edges, and the slab carries their weight.
@@ -67,9 +67,9 @@ fn cans_rest_on_a_slab() {
     let m = Cans { friction: 0.5 };
     let rotated = UnitQuaternion::from_euler_angles(0.0, 0.0, 0.4);
     for q in [
-        configuration([3.0, 0.0, 0.15], upright()),
-        configuration([3.27, 0.1, 0.15], upright()),
-        configuration([3.27, 0.27, 0.15], rotated * upright()),
+        configuration([3.0, 0.0, 0.15], upright_rotation()),
+        configuration([3.27, 0.1, 0.15], upright_rotation()),
+        configuration([3.27, 0.27, 0.15], rotated * upright_rotation()),
         configuration([3.0, 0.0, 0.1], UnitQuaternion::identity()),
         configuration([3.0, 0.25, 0.1], UnitQuaternion::identity()),
         configuration([3.1, -0.2, 0.1], rotated),

@@ -70,19 +70,19 @@ fn random_heaps_gain_no_energy() {
     let count = std::env::var("LINKWORK_SCENES").ok().and_then(|count| count.parse().ok()).unwrap_or(1);
     for seed in 0..count {
         let mut random = Random(seed);
-        (0..3).for_each(|_| _ = random.next());
+        (0..3).for_each(|_| _ = random.next_random_number());
         let m = Heap {
             friction: [0.0, 0.2, 0.5, 1.0][seed as usize % 4],
             restitution: [0.0, 0.0, 0.4][seed as usize % 3],
         };
         let mut q = m.neutral();
         for k in 0..3 {
-            let (place, rotation) = (random.point() * 0.04, random.rotation().coords);
+            let (place, rotation) = (random.random_point() * 0.04, random.random_rotation().coords);
             q.fixed_rows_mut::<3>(7 * k).copy_from_slice(&[place[0], place[1], 0.2 + 0.25 * k as f64]);
             q.fixed_rows_mut::<4>(7 * k + 3).copy_from(&rotation);
         }
         let mut v = SVector::<f64, 18>::zeros();
-        v.iter_mut().for_each(|v| *v = random.next());
+        v.iter_mut().for_each(|v| *v = random.next_random_number());
         let h = 1e-3;
         let total_energy = |q: &_, v: &_| m.kinetic_energy(q, v) + m.potential_energy(q);
         let (mut before, mut least, mut end) = (f64::INFINITY, 0.0_f64, q);

@@ -2,7 +2,7 @@
 
 use linkwork::nalgebra::SVector;
 use linkwork::prelude::{Constrained, Rk4, simulate};
-use linkwork_benches::peers::contender::{Contender, Function, Owner};
+use linkwork_benches::peers::contender::{Contender, ContenderOwner, MeasuredFunction};
 use linkwork_benches::peers::own::{GeneratedContender, ToNumberList};
 use linkwork_benches::random::Random;
 use linkwork_benches::states::{STATES, State};
@@ -36,9 +36,9 @@ pub struct Mechanism {
 }
 
 /// Accelerations and multipliers. Peers compute both but return only the accelerations.
-struct Solution<const NV: usize, const NC: usize>(SVector<f64, NV>, SVector<f64, NC>);
+struct AccelerationsAndMultipliers<const NV: usize, const NC: usize>(SVector<f64, NV>, SVector<f64, NC>);
 
-impl<const NV: usize, const NC: usize> ToNumberList for Solution<NV, NC> {
+impl<const NV: usize, const NC: usize> ToNumberList for AccelerationsAndMultipliers<NV, NC> {
     fn flatten(&self) -> Vec<f64> {
         self.0.flatten()
     }
@@ -71,29 +71,29 @@ where
         Some(State { q, v, a, tau })
     };
     let mut random = Random::new(7);
-    let mut vector = |limit| SVector::<f64, NV>::from_fn(|_, _| random.uniform_within(limit));
+    let mut random_vector = |limit| SVector::<f64, NV>::from_fn(|_, _| random.uniform_within(limit));
     let mut states = Vec::from_iter(consistent_state(&middle, &start));
     while states.len() < STATES {
         let speed = start.amax().max(1.0);
-        states.extend(consistent_state(&m.integrate(&middle, &vector(spread)), &vector(speed)));
+        states.extend(consistent_state(&m.integrate(&middle, &random_vector(spread)), &random_vector(speed)));
     }
     let states = Rc::new(states);
     let numbers = states.iter().flat_map(State::concatenated_state_numbers).collect();
     let accelerations = GeneratedContender {
-        owner: Owner::Linkwork,
+        owner: ContenderOwner::Linkwork,
         mechanism: m.clone(),
         states: states.clone(),
-        name: Function::Constrained.function_name(),
+        name: MeasuredFunction::Constrained.generated_function_name(),
         call: |m: &M, s: &State<NQ, NV>| {
             let (a, lambda) = m.constrained_dynamics(0.0, &s.q, &s.v, &s.tau);
-            Solution(a, lambda)
+            AccelerationsAndMultipliers(a, lambda)
         },
     };
     let motion = GeneratedContender {
-        owner: Owner::Linkwork,
+        owner: ContenderOwner::Linkwork,
         mechanism: (m, step),
         states: Rc::new(states[..1].to_vec()),
-        name: Function::Motion.function_name(),
+        name: MeasuredFunction::Motion.generated_function_name(),
         call: |(m, step): &(M, f64), s: &State<NQ, NV>| {
             let run = simulate(m).from(s.q, s.v).method(Rk4::step(*step));
             run.duration(100.0 * step).finish().map_or(SVector::repeat(f64::NAN), |end| end.v)

@@ -1,10 +1,10 @@
 //! Comparison of constrained mechanisms with other libraries: accelerations, and a thousand steps.
 
 use crate::mechanisms::{Mechanism, mechanism_constructors};
-use linkwork_benches::peers::contender::{Contender, Function, Owner};
+use linkwork_benches::peers::contender::{Contender, ContenderOwner, MeasuredFunction};
 use linkwork_benches::peers::library::{self, StateRows};
 use linkwork_benches::peers::turns::{
-    ContenderMeasurement, TOLERANCE, difference, largest_or_nan, measure_in_turns,
+    ContenderMeasurement, TOLERANCE, largest_or_nan, largest_relative_difference, measure_in_turns,
     remove_disagreeing_contenders,
 };
 use linkwork_benches::states::STATES;
@@ -17,15 +17,16 @@ use std::path::Path;
 const MOTIONS: f64 = 1e-3;
 
 /// The peers with the files of their libraries; `*` is replaced by the folder of the mechanism.
-const LIBRARIES: [(&str, Owner); 4] = [
-    ("*/sympy.exact.so", Owner::Sympy),
-    ("*/sympy.fast.so", Owner::Sympy),
-    ("libpinocchio.so", Owner::Pinocchio),
-    ("libmujoco.so", Owner::Mujoco),
+const LIBRARIES: [(&str, ContenderOwner); 4] = [
+    ("*/sympy.exact.so", ContenderOwner::Sympy),
+    ("*/sympy.fast.so", ContenderOwner::Sympy),
+    ("libpinocchio.so", ContenderOwner::Pinocchio),
+    ("libmujoco.so", ContenderOwner::Mujoco),
 ];
 
 /// Order in which the columns of the implementations appear in the table.
-const COLUMNS: [Owner; 4] = [Owner::Linkwork, Owner::Sympy, Owner::Pinocchio, Owner::Mujoco];
+const COLUMNS: [ContenderOwner; 4] =
+    [ContenderOwner::Linkwork, ContenderOwner::Sympy, ContenderOwner::Pinocchio, ContenderOwner::Mujoco];
 
 /// Writes a file for every mechanism with a state and its accelerations in each line, and prints the names of
 /// the folders.
@@ -64,15 +65,15 @@ pub fn measure_mechanisms(folder: Option<&Path>, quick: bool) -> Result<(), Stri
         let mut mechanism = make();
         let numbers: &'static [f64] = std::mem::take(&mut mechanism.numbers).leak();
         let (mut soft, mut found) = (None, Vec::new());
-        for function in [Function::Constrained, Function::Motion] {
+        for function in [MeasuredFunction::Constrained, MeasuredFunction::Motion] {
             let (states, tolerance) =
-                if function == Function::Motion { (1, MOTIONS) } else { (STATES, TOLERANCE) };
+                if function == MeasuredFunction::Motion { (1, MOTIONS) } else { (STATES, TOLERANCE) };
             let rows = StateRows {
                 nq: mechanism.nq,
                 nv: mechanism.nv,
                 numbers: &numbers[..states * (mechanism.nq + 3 * mechanism.nv)],
             };
-            let own = if function == Function::Motion {
+            let own = if function == MeasuredFunction::Motion {
                 &mut mechanism.motion
             } else {
                 &mut mechanism.accelerations
@@ -83,13 +84,18 @@ pub fn measure_mechanisms(folder: Option<&Path>, quick: bool) -> Result<(), Stri
                 .into_iter()
                 .flat_map(|folder| contenders_of_peers(folder, mechanism.name, function, rows))
             {
-                if peer.owner() == Owner::Mujoco { others.push(peer) } else { exact.push(peer) }
+                if peer.owner() == ContenderOwner::Mujoco { others.push(peer) } else { exact.push(peer) }
             }
             let what = format!("{} {}", mechanism.title, function.title_in_table());
             wrong.extend(remove_disagreeing_contenders(&mut exact, &what, (rows.nv, states), tolerance));
-            if let (Some(other), Function::Constrained) = (others.first_mut(), function) {
-                let errors = (0..states)
-                    .map(|k| difference(&other.result_at_state(k), &exact[0].result_at_state(k), rows.nv));
+            if let (Some(other), MeasuredFunction::Constrained) = (others.first_mut(), function) {
+                let errors = (0..states).map(|k| {
+                    largest_relative_difference(
+                        &other.result_at_state(k),
+                        &exact[0].result_at_state(k),
+                        rows.nv,
+                    )
+                });
                 soft = Some(largest_or_nan(errors));
             }
             exact.extend(others);
@@ -108,13 +114,13 @@ pub fn measure_mechanisms(folder: Option<&Path>, quick: bool) -> Result<(), Stri
 fn contenders_of_peers(
     folder: &Path,
     name: &str,
-    function: Function,
+    function: MeasuredFunction,
     rows: StateRows<'_>,
 ) -> Vec<Box<dyn Contender>> {
     let own = folder.join(name);
     let libraries = LIBRARIES.iter().flat_map(|(path, owner)| {
         let path = folder.join(path.replace('*', name));
-        library::peers_of_library(&path, *owner, &own, function, rows)
+        library::peer_contenders_of_library(&path, *owner, &own, function, rows)
     });
     libraries.collect()
 }
@@ -177,8 +183,8 @@ fn format_significant_digits(value: Option<f64>, digits: i32) -> String {
 struct PlaceholderContender;
 
 impl Contender for PlaceholderContender {
-    fn owner(&self) -> Owner {
-        Owner::Linkwork
+    fn owner(&self) -> ContenderOwner {
+        ContenderOwner::Linkwork
     }
 
     fn variant_name(&self) -> String {

@@ -178,7 +178,7 @@ fn state_cost_weights(phase: &GaitNode) -> [VelocityVector; 2] {
 }
 
 /// Node of a trajectory to second order, with its working storage.
-struct Node {
+struct LinearisedTrajectoryNode {
     step: Transition,
     cost: TrotStepCost,
     held: HeldDerivatives<f64, 18, 12>,
@@ -186,7 +186,7 @@ struct Node {
     is_mixed: bool,
 }
 
-impl Node {
+impl LinearisedTrajectoryNode {
     fn zero_node() -> Self {
         let (step, cost, held) = (Transition::zeros(), Quadratic::zeros(), HeldDerivatives::zeros());
         Self { step, cost, held, is_mixed: false }
@@ -265,10 +265,10 @@ impl TrotGait {
         k: usize,
         state: &State<19, 18>,
         u: &Inputs,
-        node: &mut Node,
+        node: &mut LinearisedTrajectoryNode,
     ) -> Result<(), ConstraintError> {
         let ((q, v), phase) = (state, &self.phases[k]);
-        let Node { step, cost, held: found, is_mixed } = node;
+        let LinearisedTrajectoryNode { step, cost, held: found, is_mixed } = node;
         (cost.qq, cost.vv, cost.uu, cost.u) = Default::default();
         if *is_mixed {
             (cost.qv, cost.qu, cost.vu, *is_mixed) = Default::default();
@@ -318,7 +318,7 @@ impl TrotGait {
     /// Linearises the trajectory and runs the backward recursion. Returns the coefficients of the step
     /// length, and of its square, in the expected change of the cost.
     fn backward_sweep(&self, plan: &mut TrajectoryWithPolicies) -> [f64; 2] {
-        let mut node = Node::zero_node();
+        let mut node = LinearisedTrajectoryNode::zero_node();
         let mut to_go = self.final_state_cost(&plan.states[plan.inputs.len()]);
         let mut expected = [0.0; 2];
         for (k, policy) in plan.policies.iter_mut().enumerate().rev() {
@@ -424,7 +424,7 @@ pub fn measure_trot() -> String {
         costs.push(cost);
         (plan.states, plan.inputs) = next.clone();
     }
-    let mut node = Node::zero_node();
+    let mut node = LinearisedTrajectoryNode::zero_node();
     let linearise = minimum_time_per_node(nodes, || {
         for k in 0..nodes {
             trot.linearise_node(k, &plan.states[k], &plan.inputs[k], &mut node).expect("feet hold");

@@ -2,7 +2,7 @@
 
 use linkwork::nalgebra::{ArrayStorage, SMatrix};
 use linkwork_benches::generic::{Model, Options};
-use linkwork_benches::peers::contender::{Contender, Function, Owner};
+use linkwork_benches::peers::contender::{Contender, ContenderOwner, MeasuredFunction};
 use linkwork_benches::peers::own::{GeneratedContender, MatrixContender, MechanismCall, ToNumberList};
 use linkwork_benches::robots::{G1, Gen3, Kinova, Panda};
 use linkwork_benches::states::{State, random_states};
@@ -10,10 +10,10 @@ use linkwork_models::{AnymalB, PandaArm, SimpleHumanoid, Solo12, Ur5};
 use std::rc::Rc;
 
 /// A measured function, and the contender that evaluates it with generated code.
-pub type GeneratedFunctionContender = (Function, Box<dyn Contender>);
+pub type GeneratedFunctionContender = (MeasuredFunction, Box<dyn Contender>);
 
 /// Robot with the generated functions that are compared.
-pub struct Robot {
+pub struct RobotWithContenders {
     /// Name of the robot and of its folder of peer code.
     pub name: &'static str,
     /// Text of the robot's URDF file.
@@ -36,28 +36,34 @@ pub struct Robot {
 
 /// Returns a generated function of Linkwork as a contender of the comparison.
 fn linkwork_contender<M: 'static, R: ToNumberList + 'static, const NQ: usize, const NV: usize>(
-    (owner, mechanism): (Owner, M),
+    (owner, mechanism): (ContenderOwner, M),
     states: &Rc<Vec<State<NQ, NV>>>,
-    function: Function,
+    function: MeasuredFunction,
     call: MechanismCall<M, R, NQ, NV>,
 ) -> GeneratedFunctionContender {
     let states = states.clone();
     (
         function,
-        Box::new(GeneratedContender { owner, mechanism, states, name: function.function_name(), call }),
+        Box::new(GeneratedContender {
+            owner,
+            mechanism,
+            states,
+            name: function.generated_function_name(),
+            call,
+        }),
     )
 }
 
 /// Expands to the generated functions of a mechanism as contenders.
 macro_rules! functions {
     ($type:ty, $value:expr, $owner:ident, $states:expr) => {{
-        let from = (Owner::$owner, $value);
+        let from = (ContenderOwner::$owner, $value);
         [
-            linkwork_contender(from, $states, Function::Inverse, |m: &$type, s| {
+            linkwork_contender(from, $states, MeasuredFunction::Inverse, |m: &$type, s| {
                 m.inverse_dynamics(&s.q, &s.v, &s.a)
             }),
-            linkwork_contender(from, $states, Function::Mass, |m: &$type, s| m.mass_matrix(&s.q)),
-            linkwork_contender(from, $states, Function::Forward, |m: &$type, s| {
+            linkwork_contender(from, $states, MeasuredFunction::Mass, |m: &$type, s| m.mass_matrix(&s.q)),
+            linkwork_contender(from, $states, MeasuredFunction::Forward, |m: &$type, s| {
                 m.forward_dynamics(&s.q, &s.v, &s.tau)
             }),
         ]
@@ -67,12 +73,12 @@ macro_rules! functions {
 /// Expands to the generated derivatives of a mechanism as contenders.
 macro_rules! derivatives {
     ($type:ty, $value:expr, $owner:ident, $states:expr) => {{
-        let from = (Owner::$owner, $value);
+        let from = (ContenderOwner::$owner, $value);
         [
-            linkwork_contender(from, $states, Function::InverseDerivatives, |m: &$type, s| {
+            linkwork_contender(from, $states, MeasuredFunction::InverseDerivatives, |m: &$type, s| {
                 m.inverse_dynamics_derivatives(&s.q, &s.v, &s.a)
             }),
-            linkwork_contender(from, $states, Function::ForwardDerivatives, |m: &$type, s| {
+            linkwork_contender(from, $states, MeasuredFunction::ForwardDerivatives, |m: &$type, s| {
                 m.forward_dynamics_derivatives(&s.q, &s.v, &s.tau)
             }),
         ]
@@ -88,7 +94,7 @@ macro_rules! kept {
         macro_rules! keeping {
             ($function:ident, $name:ident, $count:literal, $call:expr) => {
                 (
-                    Function::$function,
+                    MeasuredFunction::$function,
                     Box::new(MatrixContender {
                         mechanism: $value,
                         states: $states.clone(),
@@ -137,7 +143,7 @@ macro_rules! robot {
         let joints = if options.free { 6 } else { 0 };
         let mut functions: Vec<GeneratedFunctionContender> = Vec::new();
         $(functions.extend($macro!($of, $value, $owner, &states));)+
-        Robot {
+        RobotWithContenders {
             name: $name,
             urdf,
             lock: options.lock,
@@ -170,12 +176,12 @@ macro_rules! file {
 mod chains;
 
 /// Returns the constructors of all robots of the comparison.
-pub fn robot_constructors() -> Vec<fn() -> Robot> {
+pub fn robot_constructors() -> Vec<fn() -> RobotWithContenders> {
     const FIXED: Options<'static> = Options { free: false, lock: &[] };
     const FREE: Options<'static> = Options { free: true, lock: &[] };
     const LOCKED: Options<'static> =
         Options { free: false, lock: &["panda_finger_joint1", "panda_finger_joint2"] };
-    let files: [fn() -> Robot; _] = [
+    let files: [fn() -> RobotWithContenders; _] = [
         || file!("ur5", "ur5", FIXED, Ur5),
         || file!("panda_arm", "panda", LOCKED, PandaArm),
         || file!("panda", "panda", FIXED, Panda),

@@ -1,7 +1,7 @@
 //! Checks that the implementations agree, then prints their times as a table.
 
-use crate::robots::{Robot, robot_constructors};
-use linkwork_benches::peers::contender::{Contender, Function, Owner};
+use crate::robots::{RobotWithContenders, robot_constructors};
+use linkwork_benches::peers::contender::{Contender, ContenderOwner, MeasuredFunction};
 use linkwork_benches::peers::library::{self, StateRows};
 use linkwork_benches::peers::turns::{
     ContenderMeasurement, TOLERANCE, measure_in_turns, remove_disagreeing_contenders,
@@ -26,7 +26,7 @@ pub fn measure_robots_and_print_table(folder: &Path, quick: bool) -> Result<(), 
     for make in robot_constructors() {
         let mut robot = make();
         let numbers: &'static [f64] = std::mem::take(&mut robot.numbers).leak();
-        for function in Function::ALL {
+        for function in MeasuredFunction::ALL {
             let mut contenders = contenders_for_function(folder, &mut robot, numbers, function);
             let what = format!("{} {}", robot.name, function.title_in_table());
             wrong.extend(remove_disagreeing_contenders(
@@ -35,11 +35,11 @@ pub fn measure_robots_and_print_table(folder: &Path, quick: bool) -> Result<(), 
                 (robot.nv, STATES),
                 TOLERANCE,
             ));
-            if contenders.iter().any(|contender| contender.owner() == Owner::Linkwork) {
+            if contenders.iter().any(|contender| contender.owner() == ContenderOwner::Linkwork) {
                 let measured = measure_in_turns(&mut contenders, STATES, budget);
-                println!("{}", format_table_line(&robot, function, Owner::Linkwork, &measured));
-                if measured.iter().any(|m| m.owner == Owner::Kept) {
-                    println!("{}", format_table_line(&robot, function, Owner::Kept, &measured));
+                println!("{}", format_table_line(&robot, function, ContenderOwner::Linkwork, &measured));
+                if measured.iter().any(|m| m.owner == ContenderOwner::Kept) {
+                    println!("{}", format_table_line(&robot, function, ContenderOwner::Kept, &measured));
                 }
             }
         }
@@ -50,16 +50,17 @@ pub fn measure_robots_and_print_table(folder: &Path, quick: bool) -> Result<(), 
 /// Returns the implementations of a function in all libraries that have the function.
 fn contenders_for_function(
     folder: &Path,
-    robot: &mut Robot,
+    robot: &mut RobotWithContenders,
     numbers: &'static [f64],
-    function: Function,
+    function: MeasuredFunction,
 ) -> Vec<Box<dyn Contender>> {
     let rows = StateRows { nq: robot.nq, nv: robot.nv, numbers };
     let files = folder.join("robots").join(robot.name);
     let mut all = Vec::new();
-    for (library, owner) in [("libpinocchio_peer.so", Owner::Pinocchio), ("libdynibo_peer.so", Owner::Dynibo)]
+    for (library, owner) in
+        [("libpinocchio_peer.so", ContenderOwner::Pinocchio), ("libdynibo_peer.so", ContenderOwner::Dynibo)]
     {
-        all.extend(library::peers_of_library(&folder.join(library), owner, &files, function, rows));
+        all.extend(library::peer_contenders_of_library(&folder.join(library), owner, &files, function, rows));
     }
     for form in CASADI {
         for flags in FLAGS {
@@ -76,15 +77,16 @@ fn contenders_for_function(
 
 /// Returns a line of the table with the times of one of Linkwork's functions.
 fn format_table_line(
-    robot: &Robot,
-    function: Function,
-    owner: Owner,
+    robot: &RobotWithContenders,
+    function: MeasuredFunction,
+    owner: ContenderOwner,
     measured: &[ContenderMeasurement],
 ) -> String {
     let fastest_of_owner =
         |owner| measured.iter().filter(|m| m.owner == owner).min_by(|a, b| a.time.total_cmp(&b.time));
     let own = fastest_of_owner(owner);
-    let others = [Owner::Pinocchio, Owner::Casadi, Owner::Dynibo].map(fastest_of_owner);
+    let others =
+        [ContenderOwner::Pinocchio, ContenderOwner::Casadi, ContenderOwner::Dynibo].map(fastest_of_owner);
     let format_optional_number =
         |value: Option<f64>, digits| value.map_or("–".to_string(), |x| format!("{x:.digits$}"));
     let format_time = |m: Option<&ContenderMeasurement>| {
@@ -93,16 +95,17 @@ fn format_table_line(
     let format_time_ratio = |m: Option<&ContenderMeasurement>| {
         format_optional_number(m.zip(own).map(|(m, own)| m.time / own.time), 1)
     };
-    let kept = if owner == Owner::Kept { ", zeros kept" } else { "" };
+    let kept = if owner == ContenderOwner::Kept { ", zeros kept" } else { "" };
     let mut cells =
         vec![format!("{} ({})", robot.name, robot.nv), format!("{}{kept}", function.title_in_table())];
     cells.extend(
-        [own, fastest_of_owner(Owner::Parameters), fastest_of_owner(Owner::Prepared)].map(format_time),
+        [own, fastest_of_owner(ContenderOwner::Parameters), fastest_of_owner(ContenderOwner::Prepared)]
+            .map(format_time),
     );
     cells.extend(others.map(format_time));
     cells.extend(others.map(format_time_ratio));
     cells.push(format_optional_number(own.and_then(|m| m.bytes).map(|bytes| bytes as f64), 0));
-    if let Some(casadi) = fastest_of_owner(Owner::Casadi) {
+    if let Some(casadi) = fastest_of_owner(ContenderOwner::Casadi) {
         eprintln!("{} {}: CasADi's best is {}", robot.name, function.title_in_table(), casadi.variant);
     }
     format!("| {} |", cells.join(" | "))

@@ -1,7 +1,7 @@
 //! Writes the robots of the comparison to files that the peer libraries read.
 
-use crate::robots::{Robot, robot_constructors};
-use linkwork_benches::peers::contender::Function;
+use crate::robots::{RobotWithContenders, robot_constructors};
+use linkwork_benches::peers::contender::MeasuredFunction;
 use roxmltree::Document;
 use std::fs;
 use std::io::{self, Write};
@@ -17,7 +17,7 @@ pub fn write_robot_folders(folder: &Path) -> io::Result<()> {
         fs::write(folder.join("robot.urdf"), urdf_with_options(&robot)?)?;
         fs::write(folder.join("joints"), robot.joints.join("\n"))?;
         let derivatives =
-            robot.functions.iter().any(|(function, _)| *function == Function::InverseDerivatives);
+            robot.functions.iter().any(|(function, _)| *function == MeasuredFunction::InverseDerivatives);
         for (name, is) in [("free", robot.free), ("derivatives", derivatives)] {
             if is {
                 fs::write(folder.join(name), "")?;
@@ -30,7 +30,7 @@ pub fn write_robot_folders(folder: &Path) -> io::Result<()> {
 
 /// Returns the file with the robot's options applied: locked joints become fixed, and no joint follows
 /// another.
-fn urdf_with_options(robot: &Robot) -> io::Result<String> {
+fn urdf_with_options(robot: &RobotWithContenders) -> io::Result<String> {
     let document = Document::parse(&robot.urdf).map_err(|error| io::Error::other(error.to_string()))?;
     let joints = document.root_element().children().filter(|node| node.has_tag_name("joint"));
     let mut changes = Vec::new();

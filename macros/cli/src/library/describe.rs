@@ -1,8 +1,8 @@
 //! Self-description of the library: names, shapes, units and documentation as JSON.
 
-use super::{Function, Kind, LibraryData};
+use super::{Function, FunctionArgumentKind, LibraryData};
 use linkwork_compiler::export::without_doc_links;
-use linkwork_compiler::mechanism::Limit;
+use linkwork_compiler::mechanism::CoordinateLimits;
 use serde_json::{Value, json};
 
 /// Returns the description of an exported library as JSON.
@@ -56,7 +56,7 @@ pub fn description_as_json(known: &LibraryData<'_, '_>) -> String {
 }
 
 /// Serialises the limits of a joint: numbers, `"parameters"` for a bound that depends on parameters, or null.
-fn limits_as_json(limit: &Limit<'_>) -> Value {
+fn limits_as_json(limit: &CoordinateLimits<'_>) -> Value {
     let [lower, upper, velocity, effort] = limit.bounds().map(|bound| {
         bound.map(|bound| bound.constant_value().map_or(json!("parameters"), |value| json!(value)))
     });
@@ -64,16 +64,20 @@ fn limits_as_json(limit: &Limit<'_>) -> Value {
 }
 
 fn function_as_json(f: &Function, unit: Option<String>) -> Value {
-    let (docs, errors) = super::functions::plain_docs(&f.docs);
+    let (docs, errors) = super::functions::docs_without_rust_notation(&f.docs);
     let arguments: Vec<Value> = f
         .arguments
         .iter()
         .map(|(name, kind)| match kind {
-            Kind::Number => json!({ "name": name, "kind": "number" }),
-            Kind::Frame => json!({ "name": name, "kind": "frame" }),
-            Kind::Marks => json!({ "name": name, "kind": "velocities" }),
-            Kind::Matrix(rows, 1) => json!({ "name": name, "kind": "array", "shape": [rows] }),
-            Kind::Matrix(rows, columns) => json!({ "name": name, "kind": "array", "shape": [rows, columns] }),
+            FunctionArgumentKind::Number => json!({ "name": name, "kind": "number" }),
+            FunctionArgumentKind::Frame => json!({ "name": name, "kind": "frame" }),
+            FunctionArgumentKind::Marks => json!({ "name": name, "kind": "velocities" }),
+            FunctionArgumentKind::Matrix(rows, 1) => {
+                json!({ "name": name, "kind": "array", "shape": [rows] })
+            }
+            FunctionArgumentKind::Matrix(rows, columns) => {
+                json!({ "name": name, "kind": "array", "shape": [rows, columns] })
+            }
         })
         .collect();
     let results: Vec<Value> =

@@ -7,7 +7,7 @@ use syn::{FnArg, GenericArgument, ImplItem, Item, PathArguments, ReturnType, Typ
 
 /// Kind of an argument of a library function.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum FunctionArgumentKind {
     /// Number passed by value.
     Number,
     /// Matrix with these numbers of rows and columns.
@@ -26,7 +26,7 @@ pub struct Function {
     /// Paragraphs of the library function's documentation.
     pub docs: Vec<String>,
     /// Names and kinds of the library function's arguments.
-    pub arguments: Vec<(String, Kind)>,
+    pub arguments: Vec<(String, FunctionArgumentKind)>,
     /// Names and shapes of the results: an empty shape for a number, otherwise the lengths of its dimensions.
     pub results: Vec<(String, Vec<usize>)>,
     /// Call expression of `m` that reads the arguments from `g`.
@@ -37,11 +37,11 @@ pub struct Function {
 
 impl Function {
     /// Returns the number of array entries of an argument.
-    pub fn length(kind: &Kind, nv: usize) -> usize {
+    pub fn argument_length(kind: &FunctionArgumentKind, nv: usize) -> usize {
         match kind {
-            Kind::Number | Kind::Frame => 1,
-            Kind::Matrix(rows, columns) => rows * columns,
-            Kind::Marks => nv,
+            FunctionArgumentKind::Number | FunctionArgumentKind::Frame => 1,
+            FunctionArgumentKind::Matrix(rows, columns) => rows * columns,
+            FunctionArgumentKind::Marks => nv,
         }
     }
 }
@@ -71,7 +71,7 @@ pub fn read_struct_functions(items: &[Item], mechanism: &str) -> (Vec<Function>,
             let in_lanes = name.strip_suffix("_lanes").filter(|_| is_batched_over_states(function));
             if let Some(one) = in_lanes {
                 names.push(one.to_string());
-            } else if let Some(function) = one(&name, function) {
+            } else if let Some(function) = function_from_impl_item(&name, function) {
                 found.push(function);
             } else if !is_exported_under_other_name(&name) {
                 left_out.push(name);
@@ -100,7 +100,7 @@ fn is_exported_under_other_name(name: &str) -> bool {
     name.ends_with("_into") || name.starts_with("frame_")
 }
 
-fn one(name: &str, function: &syn::ImplItemFn) -> Option<Function> {
+fn function_from_impl_item(name: &str, function: &syn::ImplItemFn) -> Option<Function> {
     if !function.sig.generics.params.is_empty() {
         return None;
     }
@@ -111,7 +111,7 @@ fn one(name: &str, function: &syn::ImplItemFn) -> Option<Function> {
             Type::Reference(reference) if reference.mutability.is_none() => {
                 kind_of_referenced_argument(&reference.elem)?
             }
-            plain => (is_number_type(plain)).then_some(Kind::Number)?,
+            plain => (is_number_type(plain)).then_some(FunctionArgumentKind::Number)?,
         };
         arguments.push((typed.pat.to_token_stream().to_string(), kind));
     }
@@ -123,8 +123,8 @@ fn one(name: &str, function: &syn::ImplItemFn) -> Option<Function> {
         .iter()
         .enumerate()
         .map(|(k, (_, kind))| match kind {
-            Kind::Number => format!("given(g, {k})"),
-            Kind::Marks => format!("&g.marked({k})"),
+            FunctionArgumentKind::Number => format!("given(g, {k})"),
+            FunctionArgumentKind::Marks => format!("&g.marked({k})"),
             _ => format!("&given(g, {k})"),
         })
         .collect();
@@ -158,7 +158,7 @@ pub fn doc_paragraphs(attributes: &[syn::Attribute]) -> Vec<String> {
 }
 
 /// Converts documentation for readers without Rust: returns the paragraphs, and the description of errors.
-pub fn plain_docs(docs: &[String]) -> (Vec<String>, String) {
+pub fn docs_without_rust_notation(docs: &[String]) -> (Vec<String>, String) {
     let plain: Vec<String> =
         docs.iter().map(|paragraph| without_doc_links(&remove_trait_reference(paragraph))).collect();
     let begin = plain.iter().position(|paragraph| paragraph.starts_with(ERRORS)).unwrap_or(plain.len());
@@ -215,13 +215,13 @@ fn is_optional_sign_type(kind: &Type) -> bool {
     })
 }
 
-fn kind_of_referenced_argument(kind: &Type) -> Option<Kind> {
+fn kind_of_referenced_argument(kind: &Type) -> Option<FunctionArgumentKind> {
     if let Type::Slice(slice) = kind {
-        return (slice.elem.to_token_stream().to_string() == "usize").then_some(Kind::Marks);
+        return (slice.elem.to_token_stream().to_string() == "usize").then_some(FunctionArgumentKind::Marks);
     }
     match dimensions_of_type(kind)?.as_slice() {
-        [n] => Some(Kind::Matrix(*n, 1)),
-        [rows, columns] => Some(Kind::Matrix(*rows, *columns)),
+        [n] => Some(FunctionArgumentKind::Matrix(*n, 1)),
+        [rows, columns] => Some(FunctionArgumentKind::Matrix(*rows, *columns)),
         _ => None,
     }
 }

@@ -1,6 +1,6 @@
 //! C header of an exported library.
 
-use super::{Function, Kind, LibraryData};
+use super::{Function, FunctionArgumentKind, LibraryData};
 use linkwork_compiler::export::{comment_safe_text, wrap_paragraph};
 use std::fmt::Write;
 
@@ -74,7 +74,7 @@ fn write_frame_number_enum(text: &mut String, known: &LibraryData<'_, '_>, upper
 
 fn write_function_declaration(text: &mut String, f: &Function, known: &LibraryData<'_, '_>, number: &str) {
     let nv = known.model.nv();
-    let (mut docs, errors) = super::functions::plain_docs(&f.docs);
+    let (mut docs, errors) = super::functions::docs_without_rust_notation(&f.docs);
     if !errors.is_empty() {
         docs.push(format!("Returns 1 {errors}"));
     }
@@ -85,10 +85,10 @@ fn write_function_declaration(text: &mut String, f: &Function, known: &LibraryDa
     text.push_str(if docs.is_empty() { "/*\n" } else { " *\n" });
     for (name, kind) in &f.arguments {
         let about = match kind {
-            Kind::Number => continue,
-            Kind::Frame => format!("one of {}_FRAME_…", known.prefix.to_ascii_uppercase()),
-            Kind::Marks => format!("{nv} numbers, nonzero for each selected velocity"),
-            Kind::Matrix(..) => format!("{} numbers", Function::length(kind, nv)),
+            FunctionArgumentKind::Number => continue,
+            FunctionArgumentKind::Frame => format!("one of {}_FRAME_…", known.prefix.to_ascii_uppercase()),
+            FunctionArgumentKind::Marks => format!("{nv} numbers, nonzero for each selected velocity"),
+            FunctionArgumentKind::Matrix(..) => format!("{} numbers", Function::argument_length(kind, nv)),
         };
         let _ = writeln!(text, " * {name:12} {about}");
     }
@@ -104,8 +104,8 @@ fn write_function_declaration(text: &mut String, f: &Function, known: &LibraryDa
     }
     let own = (!known.model.parameters.is_empty()).then(|| format!("const {number} *own"));
     let given = f.arguments.iter().map(|(name, kind)| match kind {
-        Kind::Number => format!("{number} {name}"),
-        Kind::Frame => format!("int {name}"),
+        FunctionArgumentKind::Number => format!("{number} {name}"),
+        FunctionArgumentKind::Frame => format!("int {name}"),
         _ => format!("const {number} *{name}"),
     });
     let wanted = f.results.iter().map(|(name, _)| format!("{number} *to_{name}"));

@@ -10,12 +10,12 @@ mod write;
 use crate::Stop;
 use crate::commands::text_option_value;
 use crate::grid::{self, TableGrid};
-use crate::input::{CompiledMechanism, Input};
+use crate::input::{CompiledMechanism, MechanismInput};
 use crate::sources::{self, manifest_dependency};
 use clap::ArgMatches;
 pub use functions::doc_paragraphs;
-use functions::{Function, Kind};
-use linkwork_compiler::Source;
+use functions::{Function, FunctionArgumentKind};
+use linkwork_compiler::ParsedSource;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::mechanism::Model;
 use linkwork_compiler::syntax::ScalarType;
@@ -25,7 +25,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Crate of an exported library.
-pub struct Crate {
+pub struct LibraryCrate {
     /// Prefix of the library's C names.
     pub prefix: String,
     /// Files of the crate: path within the crate, and text.
@@ -36,8 +36,8 @@ pub struct Crate {
 
 /// Data of the mechanism from which the crate is generated.
 struct LibraryData<'a, 'g> {
-    input: &'a Input,
-    source: &'a Source,
+    input: &'a MechanismInput,
+    source: &'a ParsedSource,
     model: &'a Model<'g>,
     prefix: &'a str,
     /// Values of the interpolation tables of the mechanism.
@@ -58,7 +58,7 @@ impl LibraryData<'_, '_> {
     }
 
     /// Returns the type of the struct with its generic argument.
-    fn struct_type(&self) -> String {
+    fn struct_type_text(&self) -> String {
         match self.source.mechanism.shell.generics.type_params().count() {
             0 => self.input.declaration.name.clone(),
             _ => format!("{}<{}>", self.input.declaration.name, self.scalar_type_name()),
@@ -74,7 +74,11 @@ impl LibraryData<'_, '_> {
 /// Generates the crate of a mechanism. It depends on the Linkwork sources in the folder `--linkwork`,
 /// otherwise on the sources that the command was built from, if they exist, otherwise on the release in the
 /// registry.
-pub fn generate_crate(input: &Input, prefix: &str, matches: &ArgMatches) -> Result<Crate, Stop> {
+pub fn generate_crate(
+    input: &MechanismInput,
+    prefix: &str,
+    matches: &ArgMatches,
+) -> Result<LibraryCrate, Stop> {
     let graph = Graph::new();
     let CompiledMechanism { source, model, output } = input.compile_mechanism(&graph)?;
     let shell = &source.mechanism.shell;
@@ -116,7 +120,7 @@ pub fn generate_crate(input: &Input, prefix: &str, matches: &ArgMatches) -> Resu
         true => write::library_source_text(&known, &description, "")? + &expansion,
         false => write::library_source_text(&known, &description, &declaration_with_absolute_paths(input)?)?,
     };
-    Ok(Crate {
+    Ok(LibraryCrate {
         prefix: prefix.to_string(),
         files: vec![
             ("Cargo.toml", manifest),
@@ -143,7 +147,7 @@ fn has_sliding_contacts(functions: &[Function]) -> bool {
 }
 
 /// Returns the declaration of the mechanism, with the paths of files made absolute.
-fn declaration_with_absolute_paths(input: &Input) -> Result<String, Stop> {
+fn declaration_with_absolute_paths(input: &MechanismInput) -> Result<String, Stop> {
     let mut arguments = TokenStream::new();
     let mut names_file = false;
     for token in input.declaration.arguments.clone() {
@@ -171,26 +175,33 @@ fn functions_with_frame_index(model: &Model<'_>) -> Vec<Function> {
         return Vec::new();
     }
     let (nq, nv) = (model.nq(), model.nv());
-    let configuration_argument = || ("q".to_string(), Kind::Matrix(nq, 1));
-    let velocity_argument = || ("v".to_string(), Kind::Matrix(nv, 1));
-    let acceleration_argument = || ("a".to_string(), Kind::Matrix(nv, 1));
-    let time = model.time.then(|| ("t".to_string(), Kind::Number));
-    let frame_function =
-        |name: &str, function: &str, rest: Vec<(String, Kind)>, shape: Vec<usize>, about: &str| {
-            let arguments: Vec<(String, Kind)> =
-                [("frame".to_string(), Kind::Frame)].into_iter().chain(time.clone()).chain(rest).collect();
-            let at = if model.time { "given(g, 1)" } else { "0.0" };
-            let first = if model.time { 2 } else { 1 };
-            let states: Vec<String> = (first..arguments.len()).map(|k| format!("&given(g, {k})")).collect();
-            Function {
-                name: name.to_string(),
-                docs: vec![about.to_string()],
-                call: format!("linkwork::Frames::{function}(m, frame(g)?, {at}, {})", states.join(", ")),
-                arguments,
-                results: vec![("result".to_string(), shape)],
-                lanes: None,
-            }
-        };
+    let configuration_argument = || ("q".to_string(), FunctionArgumentKind::Matrix(nq, 1));
+    let velocity_argument = || ("v".to_string(), FunctionArgumentKind::Matrix(nv, 1));
+    let acceleration_argument = || ("a".to_string(), FunctionArgumentKind::Matrix(nv, 1));
+    let time = model.time.then(|| ("t".to_string(), FunctionArgumentKind::Number));
+    let frame_function = |name: &str,
+                          function: &str,
+                          rest: Vec<(String, FunctionArgumentKind)>,
+                          shape: Vec<usize>,
+                          about: &str| {
+        let arguments: Vec<(String, FunctionArgumentKind)> =
+            [("frame".to_string(), FunctionArgumentKind::Frame)]
+                .into_iter()
+                .chain(time.clone())
+                .chain(rest)
+                .collect();
+        let at = if model.time { "given(g, 1)" } else { "0.0" };
+        let first = if model.time { 2 } else { 1 };
+        let states: Vec<String> = (first..arguments.len()).map(|k| format!("&given(g, {k})")).collect();
+        Function {
+            name: name.to_string(),
+            docs: vec![about.to_string()],
+            call: format!("linkwork::Frames::{function}(m, frame(g)?, {at}, {})", states.join(", ")),
+            arguments,
+            results: vec![("result".to_string(), shape)],
+            lanes: None,
+        }
+    };
     vec![
         frame_function(
             "frame_placement",
@@ -239,7 +250,10 @@ fn limit_functions(model: &Model<'_>) -> Vec<Function> {
             None => format!("linkwork::Limits::{name}(m)"),
             Some(_) => format!("linkwork::Limits::{name}(m, &given(g, 0))"),
         },
-        arguments: takes.iter().map(|(name, n)| ((*name).to_string(), Kind::Matrix(*n, 1))).collect(),
+        arguments: takes
+            .iter()
+            .map(|(name, n)| ((*name).to_string(), FunctionArgumentKind::Matrix(*n, 1)))
+            .collect(),
         results: vec![("result".to_string(), vec![takes.map_or(nv, |(_, n)| n)])],
         lanes: None,
     };
@@ -281,15 +295,15 @@ fn limit_functions(model: &Model<'_>) -> Vec<Function> {
 /// Returns the functions for steps of the classical Runge–Kutta method.
 fn step_functions(model: &Model<'_>, with_jacobians: bool) -> Vec<Function> {
     let [nq, nv, nu] = [model.nq(), model.nv(), model.nu()];
-    let vector_argument = |name: &str, n| (name.to_string(), Kind::Matrix(n, 1));
-    let time = model.time.then(|| ("t".to_string(), Kind::Number));
+    let vector_argument = |name: &str, n| (name.to_string(), FunctionArgumentKind::Matrix(n, 1));
+    let time = model.time.then(|| ("t".to_string(), FunctionArgumentKind::Number));
     let state = [
         vector_argument("q", nq),
         vector_argument("v", nv),
         vector_argument("u", nu),
-        ("h".to_string(), Kind::Number),
+        ("h".to_string(), FunctionArgumentKind::Number),
     ];
-    let arguments: Vec<(String, Kind)> = time.into_iter().chain(state).collect();
+    let arguments: Vec<(String, FunctionArgumentKind)> = time.into_iter().chain(state).collect();
     let first = usize::from(model.time);
     let at = if model.time { "given(g, 0)" } else { "0.0" };
     let format_step_call = |function: &str| {
@@ -313,7 +327,7 @@ fn step_functions(model: &Model<'_>, with_jacobians: bool) -> Vec<Function> {
         call: format_step_call("step"),
         lanes: None,
     };
-    let derivative_block = |name: &str, columns| (name.to_string(), vec![nv, columns]);
+    let derivative_result_shape = |name: &str, columns| (name.to_string(), vec![nv, columns]);
     let transition = Function {
         name: "transition".to_string(),
         docs: vec![
@@ -326,12 +340,12 @@ fn step_functions(model: &Model<'_>, with_jacobians: bool) -> Vec<Function> {
         results: vec![
             ("q".to_string(), vec![nq]),
             ("v".to_string(), vec![nv]),
-            derivative_block("q_by_q", nv),
-            derivative_block("q_by_v", nv),
-            derivative_block("q_by_u", nu),
-            derivative_block("v_by_q", nv),
-            derivative_block("v_by_v", nv),
-            derivative_block("v_by_u", nu),
+            derivative_result_shape("q_by_q", nv),
+            derivative_result_shape("q_by_v", nv),
+            derivative_result_shape("q_by_u", nu),
+            derivative_result_shape("v_by_q", nv),
+            derivative_result_shape("v_by_v", nv),
+            derivative_result_shape("v_by_u", nu),
         ],
         call: format_step_call("transition"),
         lanes: None,

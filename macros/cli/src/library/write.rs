@@ -1,6 +1,6 @@
 //! Rust source of the crate: the declaration, the table of functions, and the exported functions.
 
-use super::{Function, Kind, LibraryData, parameter_indices_of_fields};
+use super::{Function, FunctionArgumentKind, LibraryData, parameter_indices_of_fields};
 use crate::Stop;
 use std::fmt::Write;
 
@@ -11,7 +11,7 @@ pub fn library_source_text(
     declaration: &str,
 ) -> Result<String, Stop> {
     let m = known.model;
-    let (kind, number, prefix) = (known.struct_type(), known.scalar_type_name(), known.prefix);
+    let (kind, number, prefix) = (known.struct_type_text(), known.scalar_type_name(), known.prefix);
     let [nq, nv, nu] = [m.nq(), m.nv(), m.nu()];
     let mut text = format!(
         "use linkwork::prelude::*;\nuse linkwork_library::{{self as library, Failure, Function, Given, \
@@ -65,7 +65,11 @@ pub fn library_source_text(
         },
     );
     text.push_str(&tables_as_constants(known));
-    if known.functions.iter().any(|f| f.arguments.iter().any(|(_, kind)| *kind == Kind::Frame)) {
+    if known
+        .functions
+        .iter()
+        .any(|f| f.arguments.iter().any(|(_, kind)| *kind == FunctionArgumentKind::Frame))
+    {
         let _ = write!(
             text,
             "/// The number of a frame.\nfn frame(g: Given<'_, {number}>) -> Result<usize, Failure> {{
@@ -85,7 +89,7 @@ pub fn library_source_text(
 /// Returns the row of a function in the library's function table.
 fn function_table_row(f: &Function, nv: usize) -> String {
     let arguments: Vec<String> =
-        f.arguments.iter().map(|(_, kind)| Function::length(kind, nv).to_string()).collect();
+        f.arguments.iter().map(|(_, kind)| Function::argument_length(kind, nv).to_string()).collect();
     let results: Vec<String> =
         f.results.iter().map(|(_, shape)| shape.iter().product::<usize>().to_string()).collect();
     let format_row_closure = |call: &str| {
@@ -171,7 +175,7 @@ fn parameter_check_code(known: &LibraryData<'_, '_>) -> &'static str {
 /// Writes the exported C functions that every library has.
 fn write_common_exports(text: &mut String, known: &LibraryData<'_, '_>) {
     let (prefix, kind, number, m) =
-        (known.prefix, known.struct_type(), known.scalar_type_name(), known.model);
+        (known.prefix, known.struct_type_text(), known.scalar_type_name(), known.model);
     let _ = write!(
         text,
         "/// Names, shapes, units and documentation, as JSON.
@@ -222,7 +226,7 @@ fn write_common_exports(text: &mut String, known: &LibraryData<'_, '_>) {
 /// Writes the exported C functions for simulations and rollouts.
 fn write_motion_functions(text: &mut String, known: &LibraryData<'_, '_>) {
     let (prefix, kind, number, m) =
-        (known.prefix, known.struct_type(), known.scalar_type_name(), known.model);
+        (known.prefix, known.struct_type_text(), known.scalar_type_name(), known.model);
     let [nq, nv, nu] = [m.nq(), m.nv(), m.nu()];
     let _ = write!(
         text,
@@ -306,8 +310,8 @@ fn write_function_export(
 ) {
     let own = has_parameters.then(|| format!("own: *const {number}"));
     let given = f.arguments.iter().map(|(name, kind)| match kind {
-        Kind::Number => format!("{name}: {number}"),
-        Kind::Frame => format!("{name}: c_int"),
+        FunctionArgumentKind::Number => format!("{name}: {number}"),
+        FunctionArgumentKind::Frame => format!("{name}: c_int"),
         _ => format!("{name}: *const {number}"),
     });
     // The prefix avoids clashes, since a result may have the name of an argument.
@@ -318,8 +322,8 @@ fn write_function_export(
         .arguments
         .iter()
         .map(|(name, kind)| match kind {
-            Kind::Number => format!("&{name}"),
-            Kind::Frame => format!("&({name} as {number})"),
+            FunctionArgumentKind::Number => format!("&{name}"),
+            FunctionArgumentKind::Frame => format!("&({name} as {number})"),
             _ => name.clone(),
         })
         .collect();

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Function call: its arguments in C, and the expected results in order.
-pub struct Entry {
+pub struct CallWithExpectedResults {
     pub name: &'static str,
     pub arguments: &'static str,
     pub results: Vec<Vec<f64>>,
@@ -14,7 +14,7 @@ pub struct Entry {
 }
 
 /// Exported mechanism with the calls whose results in C and Rust are compared.
-pub struct Case {
+pub struct ExportedMechanismCase {
     /// Prefix of identifiers and of file names.
     pub prefix: &'static str,
     pub parameters: Vec<f64>,
@@ -23,13 +23,13 @@ pub struct Case {
     pub time: Option<f64>,
     /// Values of the arguments of the functions, by name.
     pub given: Vec<(&'static str, Vec<f64>)>,
-    pub entries: Vec<Entry>,
+    pub entries: Vec<CallWithExpectedResults>,
     /// Maximum error of the results, relative to the largest entry of each.
     pub tolerance: f64,
 }
 
 /// Returns a C program that prints the results of all calls, one line per call.
-pub fn c_program(case: &Case, scalar: &str) -> String {
+pub fn c_test_program(case: &ExportedMechanismCase, scalar: &str) -> String {
     let p = case.prefix;
     let format_number_list = |numbers: &[f64]| {
         let texts: Vec<String> = numbers.iter().map(|x| format!("({scalar}){x:?}")).collect();
@@ -93,7 +93,7 @@ pub fn c_program(case: &Case, scalar: &str) -> String {
     text
 }
 
-pub fn c_compilers() -> Vec<&'static str> {
+pub fn available_c_compilers() -> Vec<&'static str> {
     let is_compiler_available =
         |name: &&str| Command::new(name).arg("--version").output().is_ok_and(|o| o.status.success());
     let known: Vec<&str> = ["gcc", "clang"].into_iter().filter(is_compiler_available).collect();
@@ -142,7 +142,7 @@ pub fn compile_and_run(compiler: &str, folder: &Path, p: &str, main: &str, flags
     text.lines().map(parse_numbers_of_line).collect()
 }
 
-pub fn compare_results(case: &Case, found: &[Vec<f64>], tolerance: f64) {
+pub fn compare_results(case: &ExportedMechanismCase, found: &[Vec<f64>], tolerance: f64) {
     assert_eq!(found.len(), case.entries.len(), "{}", case.prefix);
     for (entry, found) in case.entries.iter().zip(found) {
         let expected = entry.results.concat();
@@ -165,8 +165,8 @@ const LONG: u64 = 800_000;
 
 /// Exports C code, compiles it without and with optimisation for this processor, and compares the results
 /// with Rust.
-pub fn check_exported_code(case: &Case, arguments: &[&str]) {
-    let compilers = c_compilers();
+pub fn check_exported_code(case: &ExportedMechanismCase, arguments: &[&str]) {
+    let compilers = available_c_compilers();
     if compilers.is_empty() {
         println!("skipped: there is no C compiler");
         return;
@@ -178,7 +178,8 @@ pub fn check_exported_code(case: &Case, arguments: &[&str]) {
     let ways = [&["-O0"][..], &["-O1", "-march=native"]];
     for compiler in compilers {
         for flags in ways.into_iter().take(if is_long_source { 1 } else { 2 }) {
-            let found = compile_and_run(compiler, &folder, case.prefix, &c_program(case, "double"), flags);
+            let found =
+                compile_and_run(compiler, &folder, case.prefix, &c_test_program(case, "double"), flags);
             compare_results(case, &found, case.tolerance);
         }
     }

@@ -1,6 +1,6 @@
 //! Tests of exported CUDA code: compiled as C++, the kernels run on the processor, one state after another.
 
-use super::compiled::{Case, Entry, compare_results, test_folder};
+use super::compiled::{CallWithExpectedResults, ExportedMechanismCase, compare_results, test_folder};
 use std::fmt::Write;
 use std::path::Path;
 use std::process::Command;
@@ -16,7 +16,7 @@ pub fn available_cpp_compilers() -> Vec<&'static str> {
 }
 
 /// Returns a C++ program that prints the results of all calls for the last state of a batch.
-fn kernel_test_program(case: &Case, scalar: &str) -> String {
+fn kernel_test_program(case: &ExportedMechanismCase, scalar: &str) -> String {
     let p = case.prefix;
     // Other states have other values.
     let varied_batch_numbers_text = |numbers: &[f64]| {
@@ -75,7 +75,12 @@ fn split_into_table_initialisers(tables: &str) -> Vec<String> {
     parts.map(|part| format!("{{{{{}", part.trim_end_matches(", "))).collect()
 }
 
-fn write_kernel_call(text: &mut String, entry: &Entry, case: &Case, own: &str) {
+fn write_kernel_call(
+    text: &mut String,
+    entry: &CallWithExpectedResults,
+    case: &ExportedMechanismCase,
+    own: &str,
+) {
     let p = case.prefix;
     let (name, frame) = match entry.name.split_once(' ') {
         Some((name, "0")) => (name, "0, ".to_string()),
@@ -119,7 +124,7 @@ fn compile_and_run(compiler: &str, folder: &Path, p: &str, main: &str) -> Vec<Ve
 }
 
 /// Exports CUDA kernels, compiles them as C++ for the processor and compares the results with Rust.
-pub fn check_exported_kernels(case: &Case, scalar: &str, arguments: &[&str]) {
+pub fn check_exported_kernels(case: &ExportedMechanismCase, scalar: &str, arguments: &[&str]) {
     let Some(compiler) = available_cpp_compilers().into_iter().next() else {
         println!("skipped: there is no C++ compiler");
         return;

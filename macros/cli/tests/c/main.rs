@@ -8,13 +8,13 @@ mod kernels;
 mod mechanisms;
 
 use compiled::{
-    Case, Entry, c_compilers, c_program, check_exported_code, compare_results, compile_and_run,
-    export_c_code, test_folder,
+    CallWithExpectedResults, ExportedMechanismCase, available_c_compilers, c_test_program,
+    check_exported_code, compare_results, compile_and_run, export_c_code, test_folder,
 };
 use linkwork::prelude::*;
 use linkwork::{Frames, discrete};
 use linkwork_models::{AnymalB, CartPole, FourBar, FurutaPendulum, PandaArm, SimpleHumanoid, Solo12, Ur5};
-use mechanisms::{Awkward, Balloon, Wing};
+use mechanisms::{Balloon, MechanismWithReservedNames, Wing};
 
 fn deterministic_numbers(n: usize, seed: f64) -> Vec<f64> {
     (0..n).map(|k| (seed + 1.7 * k as f64).sin()).collect()
@@ -64,7 +64,7 @@ macro_rules! of_trees {
 
 macro_rules! entry {
     ($name:literal, $arguments:literal, $($value:expr),+) => {
-        Entry {
+        CallWithExpectedResults {
             name: $name,
             arguments: $arguments,
             results: vec![$($value.as_slice().to_vec()),+],
@@ -75,7 +75,12 @@ macro_rules! entry {
 
 macro_rules! scalar {
     ($name:literal, $arguments:literal, $value:expr) => {
-        Entry { name: $name, arguments: $arguments, results: vec![vec![$value]], returned: true }
+        CallWithExpectedResults {
+            name: $name,
+            arguments: $arguments,
+            results: vec![vec![$value]],
+            returned: true,
+        }
     };
 }
 
@@ -97,7 +102,7 @@ macro_rules! case {
         let time: Option<f64> = [$($t)?].first().copied();
         entries.extend(first_and_last_frame_calls(m, time, q, v, a));
         let _ = (&u, &tau);
-        Case {
+        ExportedMechanismCase {
             prefix: $prefix,
             parameters: vec![$($p),*],
             tables: [""; 2],
@@ -124,14 +129,12 @@ fn derivative_by_step_size<const NQ: usize, const NV: usize>(
 ) -> Vec<f64> {
     let d = 1e-4;
     let (start, _) = end(0.0);
-    let change_after_displacement = |x: f64| {
+    let change_of_end_state = |x: f64| {
         let (q, v) = end(x);
         [difference(&start, &q).as_slice(), v.as_slice()].concat()
     };
-    let sides: Vec<[Vec<f64>; 2]> = [1.0, 2.0, 3.0]
-        .iter()
-        .map(|k| [change_after_displacement(k * d), change_after_displacement(-k * d)])
-        .collect();
+    let sides: Vec<[Vec<f64>; 2]> =
+        [1.0, 2.0, 3.0].iter().map(|k| [change_of_end_state(k * d), change_of_end_state(-k * d)]).collect();
     let central_difference_of_entry = |i: usize| {
         let weighted_difference = |k: usize, weight: f64| weight * (sides[k][0][i] - sides[k][1][i]);
         (weighted_difference(0, 45.0) + weighted_difference(1, -9.0) + weighted_difference(2, 1.0))
@@ -217,7 +220,7 @@ fn first_and_last_frame_calls<M, const NQ: usize, const NV: usize>(
     q: linkwork::nalgebra::SVector<f64, NQ>,
     v: linkwork::nalgebra::SVector<f64, NV>,
     a: linkwork::nalgebra::SVector<f64, NV>,
-) -> Vec<Entry>
+) -> Vec<CallWithExpectedResults>
 where
     M: Frames<NQ, NV, Scalar = f64>,
 {
@@ -226,8 +229,12 @@ where
         let x = m.placement_of(frame, t, &q).expect("there is such a frame");
         [x.rotation.matrix().as_slice(), x.translation.vector.as_slice()].concat()
     };
-    let single_result_entry =
-        |name, arguments, result| Entry { name, arguments, results: vec![result], returned: false };
+    let single_result_entry = |name, arguments, result| CallWithExpectedResults {
+        name,
+        arguments,
+        results: vec![result],
+        returned: false,
+    };
     let some = "there is such a frame";
     vec![
         single_result_entry("frame_placement 0", "q", frame_placement(0)),
@@ -280,9 +287,9 @@ fn cuda_kernels_of_trees_agree_with_rust() {
     case.entries.extend(steps!(Balloon, m, case));
     case.entries.extend(products!(Balloon, m, case, 0.7));
     kernels::check_exported_kernels(&case, "double", &["tests/mechanisms/mod.rs", "--struct", "Balloon"]);
-    let m = Awkward { int: 1.2, class: 0.3, r#type: 0.8, NAN: 4.0 };
-    let mut case = case!("awkward", Awkward, m, [1.2, 0.3, 0.8, 4.0], time(), of_trees);
-    case.entries.extend(products!(Awkward, m, case));
+    let m = MechanismWithReservedNames { int: 1.2, class: 0.3, r#type: 0.8, NAN: 4.0 };
+    let mut case = case!("awkward", MechanismWithReservedNames, m, [1.2, 0.3, 0.8, 4.0], time(), of_trees);
+    case.entries.extend(products!(MechanismWithReservedNames, m, case));
     kernels::check_exported_kernels(&case, "double", &["tests/mechanisms/mod.rs", "--struct", "Awkward"]);
     let ([drag], [lift], [moment]) = wing_tables(true, true);
     let m = Wing { mass: 2.0, lift, drag, moment };
@@ -303,7 +310,10 @@ fn c_code_of_quadrupeds_agrees_with_rust() {
 #[test]
 fn c_code_of_a_humanoid_agrees_with_rust() {
     let case = case!("humanoid", SimpleHumanoid, SimpleHumanoid, [], time(), of_trees);
-    check_exported_code(&Case { tolerance: 1e-9, ..case }, &["../../models/src/humanoid.rs"]);
+    check_exported_code(
+        &ExportedMechanismCase { tolerance: 1e-9, ..case },
+        &["../../models/src/humanoid.rs"],
+    );
 }
 
 #[test]
@@ -319,8 +329,8 @@ fn c_code_of_declared_mechanisms_agrees_with_rust() {
 
 #[test]
 fn names_reserved_in_c_are_replaced() {
-    let m = Awkward { int: 1.2, class: 0.3, r#type: 0.8, NAN: 4.0 };
-    let mut case = case!("awkward", Awkward, m, [1.2, 0.3, 0.8, 4.0], time(), of_trees);
+    let m = MechanismWithReservedNames { int: 1.2, class: 0.3, r#type: 0.8, NAN: 4.0 };
+    let mut case = case!("awkward", MechanismWithReservedNames, m, [1.2, 0.3, 0.8, 4.0], time(), of_trees);
     let argument_values = |name: &str| {
         let (_, numbers) = case.given.iter().find(|(known, _)| *known == name).expect("an argument");
         numbers.clone()
@@ -342,7 +352,7 @@ fn names_reserved_in_c_are_replaced() {
         entry!("inverse_dynamics_by_parameters", "q, v, a", m.inverse_dynamics_by_parameters(&q, &v, &a)),
         entry!("inverse_dynamics_second_derivatives", "q, v, a, tau", qq, qv, vv, qa),
     ]);
-    case.entries.extend(steps!(Awkward, m, case));
+    case.entries.extend(steps!(MechanismWithReservedNames, m, case));
     check_exported_code(&case, &["tests/mechanisms/mod.rs", "--struct", "Awkward"]);
 }
 
@@ -425,7 +435,7 @@ fn closed_loops_export_functions_without_constraint_forces() {
     case.entries.push(entry!("constraint_jacobian", "q", m.constraint_jacobian(&q)));
     case.entries.push(entry!("constraint_residuals", "q", m.constraint_residuals(&q)));
     check_exported_code(&case, &["../../models/src/four_bar.rs"]);
-    if !c_compilers().is_empty() {
+    if !available_c_compilers().is_empty() {
         let header = std::fs::read_to_string(test_folder("four_bar").join("four_bar.h")).expect("the header");
         assert!(header.contains("Not in C:") && !header.contains("four_bar_forward_dynamics("), "{header}");
     }
@@ -434,14 +444,14 @@ fn closed_loops_export_functions_without_constraint_forces() {
 #[test]
 fn c_code_in_single_precision_agrees_with_rust() {
     let case = case!("single", Ur5, Ur5, [], time(), of_trees);
-    let Some(compiler) = c_compilers().into_iter().next() else {
+    let Some(compiler) = available_c_compilers().into_iter().next() else {
         println!("skipped: there is no C compiler");
         return;
     };
     let folder = test_folder("single");
     export_c_code(&folder, &["--prefix", "single", "--scalar", "float", "../../models/urdf/ur5.urdf"]);
     let flags = ["-O2", "-Wdouble-promotion", "-Wfloat-conversion"];
-    let found = compile_and_run(compiler, &folder, "single", &c_program(&case, "float"), &flags);
+    let found = compile_and_run(compiler, &folder, "single", &c_test_program(&case, "float"), &flags);
     compare_results(&case, &found, 2e-3);
 }
 
@@ -449,7 +459,7 @@ fn c_code_in_single_precision_agrees_with_rust() {
 /// functions, arguments or types.
 #[test]
 fn c_code_compiles_for_any_mechanism_name() {
-    let Some(compiler) = c_compilers().into_iter().next() else {
+    let Some(compiler) = available_c_compilers().into_iter().next() else {
         println!("skipped: there is no C compiler");
         return;
     };

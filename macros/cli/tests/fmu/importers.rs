@@ -9,18 +9,18 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Mechanism with the arguments of the command.
-struct Case {
+struct FmuExportCase {
     name: &'static str,
     arguments: Vec<String>,
     /// Bound for the errors of Euler's method with steps of 10⁻⁴ s after half a second.
     euler: f64,
 }
 
-impl Case {
-    fn new(name: &'static str, file: &[&str], values: &'static [&'static str], euler: f64) -> Case {
+impl FmuExportCase {
+    fn new(name: &'static str, file: &[&str], values: &'static [&'static str], euler: f64) -> FmuExportCase {
         let arguments =
             file.iter().copied().chain(set_option_arguments(values)).map(ToString::to_string).collect();
-        Case { name, arguments, euler }
+        FmuExportCase { name, arguments, euler }
     }
 
     fn arguments(&self) -> Vec<&str> {
@@ -48,13 +48,13 @@ fn table_lines<const N: usize>(table: &Table<N>) -> String {
 }
 
 /// Returns the F-16 near level flight, with its tables in files.
-fn fighter_case(folder: &Path) -> Case {
+fn fighter_case(folder: &Path) -> FmuExportCase {
     let f = Fighter::F16;
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../models/src/fighter.rs");
     let flight = ["q.flight.z=-3000", "v.flight.vx=150", "v.flight.vz=5", "x.power=20", "u.throttle=0.3"];
-    let mut case = Case { name: "fighter", arguments: vec![file.to_string()], euler: 1e-2 };
-    let mut set = |value: String| case.arguments.extend(["--set".to_string(), value]);
-    flight.into_iter().for_each(|value| set(value.to_string()));
+    let mut case = FmuExportCase { name: "fighter", arguments: vec![file.to_string()], euler: 1e-2 };
+    let mut add_set_option = |value: String| case.arguments.extend(["--set".to_string(), value]);
+    flight.into_iter().for_each(|value| add_set_option(value.to_string()));
     let numbers = [
         ("g", f.g),
         ("mass", f.mass),
@@ -73,7 +73,7 @@ fn fighter_case(folder: &Path) -> Case {
         ("depth", f.depth),
         ("second", f.second),
     ];
-    numbers.iter().for_each(|(name, value)| set(format!("{name}={value:?}")));
+    numbers.iter().for_each(|(name, value)| add_set_option(format!("{name}={value:?}")));
     let ones = [
         ("cz", &f.cz),
         ("cx_q", &f.cx_q),
@@ -109,30 +109,30 @@ fn fighter_case(folder: &Path) -> Case {
 }
 
 /// Returns the six mechanisms; the files of tables are written to a folder.
-fn fmu_importer_cases(folder: &Path) -> Vec<Case> {
+fn fmu_importer_cases(folder: &Path) -> Vec<FmuExportCase> {
     fs::create_dir_all(folder).expect("a folder of the tests");
     vec![
-        Case::new(
+        FmuExportCase::new(
             "cart_pole",
             &["../../models/src/cart_pole.rs"],
             &["cart_mass=1", "pole_mass=0.1", "pole_length=1", "rail_damping=0.1", "q.hinge=0.3"],
             1e-3,
         ),
-        Case::new(
+        FmuExportCase::new(
             "four_bar",
             &["../../models/src/four_bar.rs"],
             &["g=9.81", "density=1", "a=0.3", "b=1", "c=0.8", "d=0.9", "q.input=1"],
             1e-2,
         ),
-        Case::new(
+        FmuExportCase::new(
             "ball",
             &["tests/fmu/mechanisms.rs", "--struct", "BouncingBall"],
             &["bounce=0.7", "q.height=1.1"],
             1e-2,
         ),
-        Case::new("ur5", &["../../models/urdf/ur5.urdf"], &[], 1e-2),
+        FmuExportCase::new("ur5", &["../../models/urdf/ur5.urdf"], &[], 1e-2),
         fighter_case(folder),
-        Case::new("top", &["../../models/src/heavy_top.rs"], TOP, 5e-2),
+        FmuExportCase::new("top", &["../../models/src/heavy_top.rs"], TOP, 5e-2),
     ]
 }
 

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Returns the shared library `linkwork-c`, which cargo writes next to the tests of the workspace.
-fn library_file() -> Option<PathBuf> {
+fn shared_library_path() -> Option<PathBuf> {
     let own = std::env::current_exe().expect("a path of the test");
     let deps = own.parent()?;
     let found = [deps.join("liblinkwork_c.so"), deps.parent()?.join("liblinkwork_c.so")];
@@ -20,7 +20,7 @@ fn library_file() -> Option<PathBuf> {
 /// Exports a mechanism with the library, and compiles the importer with its binary. Returns the program and
 /// the token.
 fn export_and_compile_importer(name: &str, arguments: &[&str]) -> Option<(PathBuf, String)> {
-    let (compiler, library) = (find_c_compiler()?, library_file()?);
+    let (compiler, library) = (find_c_compiler()?, shared_library_path()?);
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("fmu").join(name);
     fs::create_dir_all(&folder).expect("a folder of the tests");
     let archive = folder.join("model.fmu");

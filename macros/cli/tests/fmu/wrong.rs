@@ -70,7 +70,11 @@ fn random_calls_do_no_harm() {
         ("random_top", &["../../models/src/heavy_top.rs"], &top),
     ];
     for (name, file, values) in all {
-        let Some(fmu) = Fmu::with_importer(name, &[file, values].concat(), "attack.c", more) else { return };
+        let Some(fmu) =
+            Fmu::export_and_compile_with_importer(name, &[file, values].concat(), "attack.c", more)
+        else {
+            return;
+        };
         let variables = fmu.description.matches("<Float64 ").count();
         let lines = fmu.random_call_output_lines(variables, 60);
         let last: Vec<usize> =

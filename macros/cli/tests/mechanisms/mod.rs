@@ -7,7 +7,7 @@ use linkwork::prelude::*;
     gravity = -9.81 * z, second_derivatives, momentum_derivatives, sensitivities, centroidal, hamilton, conserved, regressor, packed
 )]
 #[allow(non_snake_case, reason = "a name that is a macro in C")]
-pub struct Awkward {
+pub struct MechanismWithReservedNames {
     pub int: f64,
     pub class: f64,
     pub r#type: f64,

@@ -319,9 +319,9 @@ fn gallery_has_pages_of_all_models() {
     let exports = models.lines().filter_map(|line| line.strip_prefix("pub use ")?.split_once("::"));
     let names: Vec<&str> = exports.flat_map(|(_, names)| names.split(['{', '}', ',', ';', ' '])).collect();
     // Two further variants of the arm `Panda`.
-    let is_listed = |name: &&&str| !name.is_empty() && !["LoadedPanda", "PandaArm"].contains(*name);
+    let needs_gallery_page = |name: &&&str| !name.is_empty() && !["LoadedPanda", "PandaArm"].contains(*name);
     assert!(names.contains(&"Pendulum"));
-    for name in names.iter().filter(is_listed) {
+    for name in names.iter().filter(needs_gallery_page) {
         assert!(here.join(format!("pages/{name}.html")).is_file(), "there is no page of {name}");
     }
     let Some(node) = first_program_on_path(&["node"]) else {

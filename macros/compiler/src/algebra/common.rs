@@ -1,6 +1,6 @@
 //! Extraction of common factors from the items of a sum, as long as it reduces the number of printed symbols.
 
-use super::item::{Item, PrintOrder, SumFactor, common_number_factor, is_close};
+use super::item::{PrintOrder, PrintedTerm, SumFactor, common_number_factor, is_close};
 use super::polynomial::Monomial;
 
 /// Maximum number of items of a sum that are searched for common factors: longer sums are not readable
@@ -28,14 +28,14 @@ pub enum FactorScope {
 /// Extracts common factors from a sum and from the sums in its items.
 pub fn extract_common_factors_of_sum(
     order: &PrintOrder,
-    mut items: Vec<Item>,
+    mut items: Vec<PrintedTerm>,
     scope: FactorScope,
-) -> Vec<Item> {
+) -> Vec<PrintedTerm> {
     let kept =
         if scope == FactorScope::Kinds { order.rates.union_of_bits(order.positions) } else { Monomial::ONE };
     let rules = FactoringRules { order, kept, room: NESTED };
     factor_sums(&rules, &mut items);
-    let degree_of_rates = |item: &Item| item.factor.restrict_to_mask(order.rates).degree();
+    let degree_of_rates = |item: &PrintedTerm| item.factor.restrict_to_mask(order.rates).degree();
     let mut kinds: Vec<u32> = match scope {
         FactorScope::All => return factor_sum(&rules, items),
         FactorScope::Kinds => items.iter().map(degree_of_rates).collect(),
@@ -68,7 +68,7 @@ impl FactoringRules<'_> {
 }
 
 /// Extracts common factors from the sums within items.
-fn factor_sums(rules: &FactoringRules<'_>, items: &mut [Item]) {
+fn factor_sums(rules: &FactoringRules<'_>, items: &mut [PrintedTerm]) {
     let inner = rules.rules_in_parentheses();
     for item in items {
         for sum in item.sums.iter_mut().filter(|sum| sum.power == 1) {
@@ -81,7 +81,7 @@ fn factor_sums(rules: &FactoringRules<'_>, items: &mut [Item]) {
 }
 
 /// Merges sums of a single item into the item that they are a factor of.
-fn unwrap_single_sums(item: &mut Item) {
+fn unwrap_single_sums(item: &mut PrintedTerm) {
     for sum in std::mem::take(&mut item.sums) {
         match sum.items.as_slice() {
             [only]
@@ -99,7 +99,7 @@ fn unwrap_single_sums(item: &mut Item) {
 
 /// Extracts common factors from a sum, except the atoms in `rules.kept`. In a short sum, every group of items
 /// is tried first, and the shortest result is used.
-fn factor_sum(rules: &FactoringRules<'_>, items: Vec<Item>) -> Vec<Item> {
+fn factor_sum(rules: &FactoringRules<'_>, items: Vec<PrintedTerm>) -> Vec<PrintedTerm> {
     let mut best = factor_greedily(rules, items.clone());
     if items.len() > FEW {
         return best;
@@ -114,7 +114,7 @@ fn factor_sum(rules: &FactoringRules<'_>, items: Vec<Item>) -> Vec<Item> {
 }
 
 /// Repeatedly takes out the common factor that saves the most symbols.
-fn factor_greedily(rules: &FactoringRules<'_>, mut items: Vec<Item>) -> Vec<Item> {
+fn factor_greedily(rules: &FactoringRules<'_>, mut items: Vec<PrintedTerm>) -> Vec<PrintedTerm> {
     while items.len() <= MOST {
         let mut best: Option<CommonFactorGroup> = None;
         for group in shortening_groups(rules, &items) {
@@ -132,13 +132,17 @@ fn factor_greedily(rules: &FactoringRules<'_>, mut items: Vec<Item>) -> Vec<Item
 struct CommonFactorGroup {
     members: Vec<usize>,
     /// The sum of the members, with the common factor taken out.
-    whole: Item,
+    whole: PrintedTerm,
     /// Number of printed symbols that the extraction of the factor saves.
     saved: usize,
 }
 
 /// Replaces the members of a group by the factored item.
-fn replace_group(rules: &FactoringRules<'_>, mut items: Vec<Item>, group: CommonFactorGroup) -> Vec<Item> {
+fn replace_group(
+    rules: &FactoringRules<'_>,
+    mut items: Vec<PrintedTerm>,
+    group: CommonFactorGroup,
+) -> Vec<PrintedTerm> {
     let CommonFactorGroup { members, mut whole, .. } = group;
     if let Some(last) = whole.sums.last_mut() {
         last.items = factor_greedily(&rules.rules_in_parentheses(), std::mem::take(&mut last.items));
@@ -157,10 +161,10 @@ fn replace_group(rules: &FactoringRules<'_>, mut items: Vec<Item>, group: Common
 
 /// Returns the groups of items whose factored form is shorter than their sum, within the allowed nesting
 /// depth.
-fn shortening_groups(rules: &FactoringRules<'_>, items: &[Item]) -> Vec<CommonFactorGroup> {
-    let printed_length_of_items = |items: &[Item]| rules.order.printed_length(items);
+fn shortening_groups(rules: &FactoringRules<'_>, items: &[PrintedTerm]) -> Vec<CommonFactorGroup> {
+    let printed_length_of_items = |items: &[PrintedTerm]| rules.order.printed_length(items);
     let shortening_group_of_members = |members: Vec<usize>| {
-        let before: Vec<Item> = members.iter().filter_map(|k| items.get(*k)).cloned().collect();
+        let before: Vec<PrintedTerm> = members.iter().filter_map(|k| items.get(*k)).cloned().collect();
         let whole = factored_sum_of_items(rules, &before, members.len() == items.len())?;
         let saved = printed_length_of_items(&before)
             .checked_sub(printed_length_of_items(std::slice::from_ref(&whole)))?;
@@ -174,9 +178,9 @@ fn shortening_groups(rules: &FactoringRules<'_>, items: &[Item]) -> Vec<CommonFa
 }
 
 /// Returns the sets of at least two items that share an atom or a sum.
-fn candidate_item_sets(rules: &FactoringRules<'_>, items: &[Item]) -> Vec<Vec<usize>> {
+fn candidate_item_sets(rules: &FactoringRules<'_>, items: &[PrintedTerm]) -> Vec<Vec<usize>> {
     let mut found: Vec<Vec<usize>> = Vec::new();
-    let mut add = |has: &dyn Fn(&Item) -> bool| {
+    let mut add_matching_item_set = |has: &dyn Fn(&PrintedTerm) -> bool| {
         let members: Vec<usize> = (0..items.len()).filter(|k| has(&items[*k])).collect();
         if members.len() > 1 && !found.contains(&members) {
             found.push(members);
@@ -185,10 +189,10 @@ fn candidate_item_sets(rules: &FactoringRules<'_>, items: &[Item]) -> Vec<Vec<us
     for atom in
         rules.order.atoms.iter().filter(|k| !Monomial::first_power_of_atom(**k).intersects_mask(rules.kept))
     {
-        add(&|item| item.factor.power_of_atom(*atom) > 0);
+        add_matching_item_set(&|item| item.factor.power_of_atom(*atom) > 0);
     }
     for sum in items.iter().flat_map(|item| &item.sums) {
-        add(&|item| item.sums.iter().any(|other| sign_ratio_of_sums(sum, other).is_some()));
+        add_matching_item_set(&|item| item.sums.iter().any(|other| sign_ratio_of_sums(sum, other).is_some()));
     }
     found
 }
@@ -196,16 +200,20 @@ fn candidate_item_sets(rules: &FactoringRules<'_>, items: &[Item]) -> Vec<Vec<us
 /// Returns the sum of items as one item: their common factors times the sum of the quotients. The first
 /// summand in parentheses is positive. If the first summand is a negative multiple of an acceleration, and
 /// `items` are not the whole sum, the sign is taken out; otherwise a positive summand is moved to the front.
-fn factored_sum_of_items(rules: &FactoringRules<'_>, items: &[Item], whole: bool) -> Option<Item> {
+fn factored_sum_of_items(
+    rules: &FactoringRules<'_>,
+    items: &[PrintedTerm],
+    whole: bool,
+) -> Option<PrintedTerm> {
     let first = items.first()?;
     let factor = items
         .iter()
         .fold(first.factor, |m, item| m.greatest_common_divisor(item.factor))
         .clear_mask(rules.kept);
     let mut sums: Vec<SumFactor> = Vec::new();
-    let mut left: Vec<Item> = items
+    let mut left: Vec<PrintedTerm> = items
         .iter()
-        .map(|item| Item {
+        .map(|item| PrintedTerm {
             coefficient: item.coefficient,
             factor: item.factor.quotient(factor),
             sums: item.sums.clone(),
@@ -225,28 +233,30 @@ fn factored_sum_of_items(rules: &FactoringRules<'_>, items: &[Item], whole: bool
         }
         sums.push(sum.clone());
     }
-    let mut inner: Vec<Item> = left.into_iter().flat_map(remove_sign_parentheses).collect();
+    let mut inner: Vec<PrintedTerm> = left.into_iter().flat_map(remove_sign_parentheses).collect();
     let mut number = common_number_factor(inner.iter().map(|item| item.coefficient));
     let is_negative_acceleration_term =
-        |item: &Item| item.coefficient < 0.0 && item.factor.intersects_mask(rules.order.accelerations);
+        |item: &PrintedTerm| item.coefficient < 0.0 && item.factor.intersects_mask(rules.order.accelerations);
     if !whole && inner.first().is_some_and(is_negative_acceleration_term) {
         number = -number.abs();
     }
     inner.iter_mut().for_each(|item| item.coefficient /= number);
-    let mut inner: Vec<Item> = inner.into_iter().flat_map(remove_sign_parentheses).collect();
+    let mut inner: Vec<PrintedTerm> = inner.into_iter().flat_map(remove_sign_parentheses).collect();
     if let Some(positive) = inner.iter().position(|item| item.coefficient > 0.0) {
         inner[..=positive].rotate_right(1);
     }
     sums.push(SumFactor { items: inner, power: 1 });
-    Some(Item { coefficient: number, factor, sums })
+    Some(PrintedTerm { coefficient: number, factor, sums })
 }
 
 /// Removes the parentheses of a sum whose only factor is a sign. Any other item is returned unchanged.
-fn remove_sign_parentheses(item: Item) -> Vec<Item> {
+fn remove_sign_parentheses(item: PrintedTerm) -> Vec<PrintedTerm> {
     match item.sums.as_slice() {
         [sum] if sum.power == 1 && item.factor == Monomial::ONE && is_close(item.coefficient.abs(), 1.0) => {
-            let scaled_item =
-                |inner: &Item| Item { coefficient: inner.coefficient * item.coefficient, ..inner.clone() };
+            let scaled_item = |inner: &PrintedTerm| PrintedTerm {
+                coefficient: inner.coefficient * item.coefficient,
+                ..inner.clone()
+            };
             sum.items.iter().map(scaled_item).collect()
         }
         _ => vec![item],
@@ -254,7 +264,7 @@ fn remove_sign_parentheses(item: Item) -> Vec<Item> {
 }
 
 /// Returns the nesting depth of the parentheses of an item.
-fn nesting_depth(item: &Item) -> usize {
+fn nesting_depth(item: &PrintedTerm) -> usize {
     let inner = item.sums.iter().flat_map(|sum| &sum.items).map(nesting_depth).max();
     inner.map_or(0, |n| n + 1)
 }
@@ -274,7 +284,7 @@ fn sign_ratio_of_sums(a: &SumFactor, b: &SumFactor) -> Option<f64> {
 }
 
 /// Returns whether the second item equals the first item times this sign.
-fn is_equal_with_sign(a: &Item, b: &Item, sign: f64) -> bool {
+fn is_equal_with_sign(a: &PrintedTerm, b: &PrintedTerm, sign: f64) -> bool {
     a.factor == b.factor
         && a.sums.len() == b.sums.len()
         && is_close(a.coefficient * sign, b.coefficient)

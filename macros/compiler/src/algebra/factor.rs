@@ -2,7 +2,7 @@
 //! common factors. Decides the order in which terms and factors are printed, but produces no text.
 
 use super::common::{FactorScope, extract_common_factors_of_sum};
-use super::item::{Item, PrintOrder, SumFactor, common_number_factor, is_close};
+use super::item::{PrintOrder, PrintedTerm, SumFactor, common_number_factor, is_close};
 use super::polynomial::{AtomRank, Monomial, Polynomial, Ring, Term};
 
 /// Relative magnitude below which a coefficient counts as rounding error among similar terms.
@@ -10,24 +10,24 @@ const NOISE: f64 = 1e-11;
 
 /// Removes terms that are rounding error: their coefficients are small relative to other terms with the same
 /// parameters and the same degrees in velocities and accelerations.
-pub fn remove_noise(ring: &Ring, p: &Polynomial) -> Polynomial {
+pub fn remove_rounding_noise(ring: &Ring, p: &Polynomial) -> Polynomial {
     let parameters = ring.mask_of_selected_atoms(|_, rank| rank == AtomRank::Parameter);
     let rates = ring.mask_of_selected_atoms(|_, rank| rank >= AtomRank::Rate);
     let accelerations = ring.mask_of_selected_atoms(|_, rank| rank == AtomRank::Acceleration);
-    let parameters_and_degree_of_term = |t: &Term| {
+    let parameters_and_rate_degree = |t: &Term| {
         let rates = t.monomial.restrict_to_mask(rates);
         (t.monomial.restrict_to_mask(parameters), rates.degree(), rates.intersects_mask(accelerations))
     };
     let mut largest: Vec<((Monomial, u32, bool), f64)> = Vec::new();
     for term in &p.terms {
-        let (kind, size) = (parameters_and_degree_of_term(term), term.coefficient.abs());
+        let (kind, size) = (parameters_and_rate_degree(term), term.coefficient.abs());
         match largest.iter_mut().find(|(k, _)| *k == kind) {
             Some((_, largest)) => *largest = largest.max(size),
             None => largest.push((kind, size)),
         }
     }
     let is_above_rounding_noise = |t: &&Term| {
-        let kind = parameters_and_degree_of_term(t);
+        let kind = parameters_and_rate_degree(t);
         largest.iter().all(|(k, size)| *k != kind || t.coefficient.abs() > NOISE * size)
     };
     Polynomial { terms: p.terms.iter().filter(is_above_rounding_noise).copied().collect() }
@@ -35,16 +35,21 @@ pub fn remove_noise(ring: &Ring, p: &Polynomial) -> Polynomial {
 
 /// Returns the items of a polynomial in printing order. `scope` selects the items from which common factors
 /// are taken out.
-pub fn items_of_polynomial(ring: &Ring, order: &PrintOrder, p: &Polynomial, scope: FactorScope) -> Vec<Item> {
+pub fn items_of_polynomial(
+    ring: &Ring,
+    order: &PrintOrder,
+    p: &Polynomial,
+    scope: FactorScope,
+) -> Vec<PrintedTerm> {
     let mut items = Vec::new();
-    let mut groups = group_by_mask(&p.terms, order.rates);
+    let mut groups = group_terms_by_masked_factors(&p.terms, order.rates);
     order.sort_term_groups(ring, &mut groups);
     for (rates, terms) in groups {
         if rates != Monomial::ONE {
             items.push(factored_item(order, &terms));
             continue;
         }
-        let mut groups = group_by_mask(&terms, order.functions);
+        let mut groups = group_terms_by_masked_factors(&terms, order.functions);
         order.sort_term_groups(ring, &mut groups);
         groups.sort_by_key(|(functions, _)| *functions != Monomial::ONE);
         for (functions, terms) in groups {
@@ -58,7 +63,7 @@ pub fn items_of_polynomial(ring: &Ring, order: &PrintOrder, p: &Polynomial, scop
 }
 
 /// Groups terms by the factors that are in a mask.
-fn group_by_mask(terms: &[Term], mask: Monomial) -> Vec<(Monomial, Vec<Term>)> {
+fn group_terms_by_masked_factors(terms: &[Term], mask: Monomial) -> Vec<(Monomial, Vec<Term>)> {
     let mut groups: Vec<(Monomial, Vec<Term>)> = Vec::new();
     for term in terms {
         let key = term.monomial.restrict_to_mask(mask);
@@ -72,14 +77,14 @@ fn group_by_mask(terms: &[Term], mask: Monomial) -> Vec<(Monomial, Vec<Term>)> {
 
 /// Appends the items of terms in parameters and positions alone: first squares of linear forms, then groups
 /// with identical positions, then groups with any common factor.
-fn append_rate_free_items(order: &PrintOrder, mut terms: Vec<Term>, items: &mut Vec<Item>) {
+fn append_rate_free_items(order: &PrintOrder, mut terms: Vec<Term>, items: &mut Vec<PrintedTerm>) {
     order.sort_terms_for_printing(&mut terms);
     while let Some(square) = terms.iter().find_map(|t| find_squared_sum(order, t, &terms)) {
         let all = expand_square(&square);
         terms.retain(|t| !all.iter().any(|s| s.monomial == t.monomial));
         items.push(square);
     }
-    let (alike, mut terms): (Vec<_>, Vec<_>) = group_by_mask(&terms, order.positions)
+    let (alike, mut terms): (Vec<_>, Vec<_>) = group_terms_by_masked_factors(&terms, order.positions)
         .into_iter()
         .partition(|(positions, group)| *positions != Monomial::ONE && group.len() > 1);
     items.extend(alike.iter().map(|(_, group)| factored_item(order, group)));
@@ -101,18 +106,18 @@ fn append_rate_free_items(order: &PrintOrder, mut terms: Vec<Term>, items: &mut 
 
 /// Returns the square of a sum whose first summand is the squared position in `leading`, if all terms of the
 /// expanded square are among `terms`.
-fn find_squared_sum(order: &PrintOrder, leading: &Term, terms: &[Term]) -> Option<Item> {
+fn find_squared_sum(order: &PrintOrder, leading: &Term, terms: &[Term]) -> Option<PrintedTerm> {
     let positions = leading.monomial.restrict_to_mask(order.positions);
     let (x, _) = positions.atoms_with_powers().find(|(_, power)| *power == 2)?;
     let rest = leading.monomial.quotient(Monomial::first_power_of_atom(x));
-    let mut sum = vec![Item::from_monomial(1.0, Monomial::first_power_of_atom(x))];
+    let mut sum = vec![PrintedTerm::from_monomial(1.0, Monomial::first_power_of_atom(x))];
     for t in terms.iter().filter(|t| *t != leading && rest.is_divisor_of(t.monomial)) {
         let coefficient = 0.5 * t.coefficient / leading.coefficient;
-        sum.push(Item::from_monomial(coefficient, t.monomial.quotient(rest)));
+        sum.push(PrintedTerm::from_monomial(coefficient, t.monomial.quotient(rest)));
     }
     let factor = rest.quotient(Monomial::first_power_of_atom(x));
     let sums = vec![SumFactor { items: sum, power: 2 }];
-    let square = Item { coefficient: leading.coefficient, factor, sums };
+    let square = PrintedTerm { coefficient: leading.coefficient, factor, sums };
     let is_term_of_sum =
         |s: &Term| terms.iter().any(|t| t.monomial == s.monomial && is_close(t.coefficient, s.coefficient));
     let several = square.sums.iter().all(|sum| sum.items.len() > 1);
@@ -120,7 +125,7 @@ fn find_squared_sum(order: &PrintOrder, leading: &Term, terms: &[Term]) -> Optio
 }
 
 /// Expands the square of a sum of single terms.
-fn expand_square(square: &Item) -> Vec<Term> {
+fn expand_square(square: &PrintedTerm) -> Vec<Term> {
     let mut terms = Vec::new();
     let sum = square.sums.first().map_or(&[][..], |sum| &sum.items);
     for (i, a) in sum.iter().enumerate() {
@@ -138,11 +143,11 @@ fn expand_square(square: &Item) -> Vec<Term> {
 
 /// Returns the common factor of all terms times the sum of the quotients, which is grouped by functions of
 /// positions once more.
-fn factored_item(order: &PrintOrder, terms: &[Term]) -> Item {
+fn factored_item(order: &PrintOrder, terms: &[Term]) -> PrintedTerm {
     let first = terms.first().map_or(Monomial::ONE, |t| t.monomial);
     let factor = terms.iter().fold(first, |m, t| m.greatest_common_divisor(t.monomial));
     if let [only] = terms {
-        return Item::from_monomial(only.coefficient, factor);
+        return PrintedTerm::from_monomial(only.coefficient, factor);
     }
     let mut terms = terms.to_vec();
     order.sort_terms_for_printing(&mut terms);
@@ -151,16 +156,16 @@ fn factored_item(order: &PrintOrder, terms: &[Term]) -> Item {
         *t = Term { monomial: t.monomial.quotient(factor), coefficient: t.coefficient / coefficient };
     }
     let mut sum = Vec::new();
-    for (functions, group) in group_by_mask(&terms, order.functions) {
+    for (functions, group) in group_terms_by_masked_factors(&terms, order.functions) {
         if functions != Monomial::ONE && group.len() < terms.len() {
             sum.push(factored_item(order, &group));
         } else {
-            sum.extend(group.iter().map(|t| Item::from_monomial(t.coefficient, t.monomial)));
+            sum.extend(group.iter().map(|t| PrintedTerm::from_monomial(t.coefficient, t.monomial)));
         }
     }
     // A sum in parentheses starts with a positive term.
     if let Some(positive) = sum.iter().position(|t| t.coefficient > 0.0) {
         sum[..=positive].rotate_right(1);
     }
-    Item { coefficient, factor, sums: vec![SumFactor { items: sum, power: 1 }] }
+    PrintedTerm { coefficient, factor, sums: vec![SumFactor { items: sum, power: 1 }] }
 }

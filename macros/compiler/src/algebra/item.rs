@@ -8,7 +8,7 @@ const ROUNDING: f64 = 1e-9;
 
 /// A term of a printed sum: `coefficient × factor × sums`.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Item {
+pub struct PrintedTerm {
     /// Numeric factor of a printed product.
     pub coefficient: f64,
     /// Product of the factors that are atoms.
@@ -21,15 +21,15 @@ pub struct Item {
 #[derive(Clone, Debug, PartialEq)]
 pub struct SumFactor {
     /// Summands of a sum in parentheses, at least two.
-    pub items: Vec<Item>,
+    pub items: Vec<PrintedTerm>,
     /// Exponent of the sum in parentheses: one, or two for a square.
     pub power: u8,
 }
 
-impl Item {
+impl PrintedTerm {
     /// Returns a product of a number and atoms, without sums.
-    pub fn from_monomial(coefficient: f64, factor: Monomial) -> Item {
-        Item { coefficient, factor, sums: Vec::new() }
+    pub fn from_monomial(coefficient: f64, factor: Monomial) -> PrintedTerm {
+        PrintedTerm { coefficient, factor, sums: Vec::new() }
     }
 }
 
@@ -91,20 +91,20 @@ impl PrintOrder {
     }
 
     /// Returns true if all factors of a sum are parameters.
-    pub fn is_constant(&self, items: &[Item]) -> bool {
+    pub fn contains_only_parameters(&self, items: &[PrintedTerm]) -> bool {
         items.iter().all(|item| {
             item.factor.clear_mask(self.parameters) == Monomial::ONE
-                && item.sums.iter().all(|sum| self.is_constant(&sum.items))
+                && item.sums.iter().all(|sum| self.contains_only_parameters(&sum.items))
         })
     }
 
     /// Returns the printed length of a sum: the number of names, numbers and functions. Signs, exponents and
     /// parentheses do not count.
-    pub fn printed_length(&self, items: &[Item]) -> usize {
+    pub fn printed_length(&self, items: &[PrintedTerm]) -> usize {
         items.iter().map(|item| self.printed_item_length(item)).sum()
     }
 
-    fn printed_item_length(&self, item: &Item) -> usize {
+    fn printed_item_length(&self, item: &PrintedTerm) -> usize {
         let of_sums = item.sums.iter().map(|sum| self.printed_length(&sum.items)).sum::<usize>();
         let factors = printed_length_of_monomial(&self.sizes, item.factor) + of_sums;
         factors + usize::from(factors == 0 || !is_close(item.coefficient.abs(), 1.0))

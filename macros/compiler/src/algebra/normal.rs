@@ -74,7 +74,7 @@ impl<'g> NormalFormCache<'g> {
                 return self.ring.multiply_and_reduce(polynomial_of_node(a), polynomial_of_node(b));
             }
             Node::Div(a, b) => {
-                let inverse = inverse(&mut self.ring, polynomial_of_node(b))?;
+                let inverse = inverse_of_polynomial(&mut self.ring, polynomial_of_node(b))?;
                 return self.ring.multiply_and_reduce(polynomial_of_node(a), &inverse);
             }
             Node::Call(Function::Sin, a) => {
@@ -131,7 +131,7 @@ fn expand_sine_or_cosine(ring: &mut Ring, argument: &Polynomial, cosine: bool) -
 
 /// Returns `1 / p`. The common factors of all terms are inverted one by one; if several terms remain after
 /// that, the inverse of their sum is one atom.
-pub fn inverse(ring: &mut Ring, p: &Polynomial) -> Option<Polynomial> {
+pub fn inverse_of_polynomial(ring: &mut Ring, p: &Polynomial) -> Option<Polynomial> {
     let first = *p.terms.first()?;
     let common = p.terms.iter().fold(first.monomial, |m, t| m.greatest_common_divisor(t.monomial));
     let mut product = Monomial::ONE;

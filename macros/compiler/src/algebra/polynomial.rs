@@ -125,7 +125,7 @@ impl Polynomial {
         for term in terms {
             match sum.last_mut() {
                 Some(last) if last.monomial == term.monomial => {
-                    last.coefficient = add(last.coefficient, term.coefficient);
+                    last.coefficient = add_without_rounding_noise(last.coefficient, term.coefficient);
                 }
                 _ => sum.push(term),
             }
@@ -142,7 +142,7 @@ impl Polynomial {
         while i < a.len() && j < b.len() {
             let (s, t) = (a[i], b[j]);
             if s.monomial == t.monomial {
-                let coefficient = add(s.coefficient, t.coefficient);
+                let coefficient = add_without_rounding_noise(s.coefficient, t.coefficient);
                 if coefficient != 0.0 {
                     terms.push(Term { coefficient, ..s });
                 }
@@ -179,7 +179,7 @@ impl Polynomial {
 }
 
 /// Adds two numbers. Returns zero if the sum is only rounding error.
-fn add(a: f64, b: f64) -> f64 {
+fn add_without_rounding_noise(a: f64, b: f64) -> f64 {
     let sum = a + b;
     if sum.abs() <= ROUNDING * a.abs().max(b.abs()) { 0.0 } else { sum }
 }
@@ -353,7 +353,7 @@ impl Ring {
             let is_reducible_term = |t: &Term| {
                 t.monomial.intersects_mask(self.squared)
                     || self.cancelling_atom_pair(t.monomial).is_some()
-                    || self.cosine_squared_over_sine(t.monomial).is_some()
+                    || self.find_cosine_squared_over_sine(t.monomial).is_some()
             };
             if !p.terms.iter().any(is_reducible_term) {
                 return (p.terms.len() <= self.terms).then_some(p);
@@ -375,7 +375,7 @@ impl Ring {
     /// Returns the cosecant, cosine and sine atoms of a factor `cos² / sin` in `m`, which equals
     /// `1 / sin − sin`. Elsewhere squares of sines are replaced by squares of cosines, so that without this
     /// rule such terms would not cancel.
-    fn cosine_squared_over_sine(&self, m: Monomial) -> Option<[usize; 3]> {
+    fn find_cosine_squared_over_sine(&self, m: Monomial) -> Option<[usize; 3]> {
         self.cosecants
             .iter()
             .find(|[inverse, cosine, _]| m.power_of_atom(*inverse) > 0 && m.power_of_atom(*cosine) > 1)
@@ -388,7 +388,7 @@ impl Ring {
         if let Some(one) = self.cancelling_atom_pair(monomial) {
             return Some(Polynomial::from_term(monomial.quotient(one), coefficient));
         }
-        if let Some([inverse, cosine, sine]) = self.cosine_squared_over_sine(monomial) {
+        if let Some([inverse, cosine, sine]) = self.find_cosine_squared_over_sine(monomial) {
             let square = Monomial::first_power_of_atom(cosine)
                 .checked_product(Monomial::first_power_of_atom(cosine))?;
             let one = monomial.quotient(square);

@@ -42,8 +42,9 @@ pub fn simplify_on_unit_sphere(ring: &mut Ring, p: &Polynomial, symbols: &[Symbo
 fn shorten_by_unit_norm(terms: &[Term], head: Monomial, squares: &[Monomial]) -> Option<Vec<Term>> {
     let places: Vec<Monomial> =
         squares.iter().filter_map(|s| head.checked_product(*s)).chain([head]).collect();
-    let coefficient = |m: &Monomial| terms.iter().find(|t| t.monomial == *m).map_or(0.0, |t| t.coefficient);
-    let before: Vec<f64> = places.iter().map(coefficient).collect();
+    let coefficient_of_monomial =
+        |m: &Monomial| terms.iter().find(|t| t.monomial == *m).map_or(0.0, |t| t.coefficient);
+    let before: Vec<f64> = places.iter().map(coefficient_of_monomial).collect();
     let count_nonzero = |list: &[f64]| list.iter().filter(|c| **c != 0.0).count();
     let size = before.iter().fold(0.0, |size: f64, c| size.max(c.abs()));
     let round_noise_to_zero = |c: f64| if c.abs() <= ROUNDING * size { 0.0 } else { c };

@@ -39,7 +39,7 @@ const CONSTANTS: [(&str, &[FunctionNeed]); 28] = [
 ];
 
 /// Returns true for the name of a constant that a mechanism may have.
-pub fn is_constant(name: &str) -> bool {
+pub fn is_known_constant_name(name: &str) -> bool {
     CONSTANTS.iter().any(|(known, _)| *known == name)
 }
 

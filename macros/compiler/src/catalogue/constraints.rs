@@ -1,7 +1,7 @@
 //! Residuals, rates and Jacobians of the constraints, and the eliminations for constrained dynamics.
 
 use super::facts::{ConstraintFacts, Facts, FunctionNeed};
-use super::row::{Declaration, Id, Row};
+use super::row::{Declaration, GeneratedId, Row};
 use super::shape::Argument::{Q, Tau, V};
 use super::shape::{Argument, Record, Shape};
 use crate::mechanism::SuppliedQuantity;
@@ -10,8 +10,11 @@ const SOLVED: &[FunctionNeed] = &[FunctionNeed::Constraints, FunctionNeed::Inert
 
 /// Rows of the functions of mechanisms with constraints that are derived from equations.
 pub const ROWS: &[Row] = &[
-    Row::derived_row(Id::ConstraintResiduals, "constraint_residuals", &[FunctionNeed::Constraints], |f| {
-        Declaration {
+    Row::derived_row(
+        GeneratedId::ConstraintResiduals,
+        "constraint_residuals",
+        &[FunctionNeed::Constraints],
+        |f| Declaration {
             arguments: vec![Q],
             shape: Shape::Vector(constraint_facts(f).holonomic),
             docs: vec![
@@ -19,9 +22,9 @@ pub const ROWS: &[Row] = &[
              satisfied.",
             ],
             ..Declaration::default()
-        }
-    }),
-    Row::derived_row(Id::ConstraintRates, "constraint_rates", &[FunctionNeed::Constraints], |f| {
+        },
+    ),
+    Row::derived_row(GeneratedId::ConstraintRates, "constraint_rates", &[FunctionNeed::Constraints], |f| {
         Declaration {
             arguments: vec![Q, V],
             shape: Shape::Vector(constraint_facts(f).all),
@@ -32,8 +35,11 @@ pub const ROWS: &[Row] = &[
             ..Declaration::default()
         }
     }),
-    Row::derived_row(Id::ConstraintJacobian, "constraint_jacobian", &[FunctionNeed::Constraints], |f| {
-        Declaration {
+    Row::derived_row(
+        GeneratedId::ConstraintJacobian,
+        "constraint_jacobian",
+        &[FunctionNeed::Constraints],
+        |f| Declaration {
             arguments: vec![Q],
             shape: Shape::Matrix(constraint_facts(f).all, f.nv),
             docs: vec![
@@ -41,31 +47,33 @@ pub const ROWS: &[Row] = &[
              `v`.",
             ],
             ..Declaration::default()
+        },
+    ),
+    Row::derived_row(GeneratedId::ConstraintBias, "constraint_bias", &[FunctionNeed::Constraints], |f| {
+        Declaration {
+            arguments: vec![Q, V],
+            shape: Shape::Vector(constraint_facts(f).all),
+            docs: vec![
+                "Bias `b(q, v)` of the constraints, m/s² and rad/s²: the time derivative of the constraint \
+             velocities is `J v̇ + b`.",
+            ],
+            ..Declaration::default()
         }
     }),
-    Row::derived_row(Id::ConstraintBias, "constraint_bias", &[FunctionNeed::Constraints], |f| Declaration {
-        arguments: vec![Q, V],
-        shape: Shape::Vector(constraint_facts(f).all),
-        docs: vec![
-            "Bias `b(q, v)` of the constraints, m/s² and rad/s²: the time derivative of the constraint \
-             velocities is `J v̇ + b`.",
-        ],
-        ..Declaration::default()
-    }),
-    Row::derived_row(Id::ConstraintResponse, "__constraint_correction", SOLVED, |f| Declaration {
+    Row::derived_row(GeneratedId::ConstraintResponse, "__constraint_correction", SOLVED, |f| Declaration {
         arguments: vec![Q, force_argument(f), bias_argument(f)],
         shape: constrained_solution_shape(f),
         ..Declaration::default()
     })
-    .without_batch(),
-    Row::derived_row(Id::ConstrainedDynamics, "__constrained_dynamics", SOLVED, |f| Declaration {
+    .without_batched_variant(),
+    Row::derived_row(GeneratedId::ConstrainedDynamics, "__constrained_dynamics", SOLVED, |f| Declaration {
         arguments: [vec![Q, V, Tau], sliding_signs_argument(f)].concat(),
         shape: constrained_solution_shape(f),
         ..Declaration::default()
     })
-    .without_batch(),
+    .without_batched_variant(),
     Row::derived_row(
-        Id::SlippingResponse,
+        GeneratedId::SlippingResponse,
         "__slipping_response",
         &[FunctionNeed::Constraints, FunctionNeed::Inertia, FunctionNeed::Slipping],
         |f| Declaration {
@@ -74,7 +82,7 @@ pub const ROWS: &[Row] = &[
             ..Declaration::default()
         },
     )
-    .without_batch(),
+    .without_batched_variant(),
 ];
 
 fn constraint_facts(f: &Facts) -> ConstraintFacts {

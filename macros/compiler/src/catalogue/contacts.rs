@@ -1,7 +1,7 @@
 //! Gap functions of contacts, and their normal and slip velocities.
 
 use super::facts::{Facts, FunctionNeed};
-use super::row::{Declaration, Id, Row};
+use super::row::{Declaration, GeneratedId, Row};
 use super::shape::Argument::{self, A, Q, V};
 use super::shape::{Record, Shape};
 use crate::mechanism::{PAIR_POSE, SuppliedQuantity};
@@ -15,7 +15,7 @@ const TOUCHING: &[FunctionNeed] = &[FunctionNeed::Contacts];
 
 /// Rows of the functions of mechanisms with contacts.
 pub const ROWS: &[Row] = &[
-    Row::derived_row(Id::ContactGaps, "contact_gaps", TOUCHING, |f| Declaration {
+    Row::derived_row(GeneratedId::ContactGaps, "contact_gaps", TOUCHING, |f| Declaration {
         arguments: vec![Q],
         shape: Shape::Vector(f.contacts.count),
         docs: vec![
@@ -25,7 +25,7 @@ pub const ROWS: &[Row] = &[
         ],
         ..Declaration::default()
     }),
-    Row::derived_row(Id::ContactRates, "contact_rates", TOUCHING, |f| Declaration {
+    Row::derived_row(GeneratedId::ContactRates, "contact_rates", TOUCHING, |f| Declaration {
         arguments: vec![Q, V],
         shape: Shape::Vector(f.contacts.rates),
         docs: vec![
@@ -36,7 +36,7 @@ pub const ROWS: &[Row] = &[
         ],
         ..Declaration::default()
     }),
-    Row::derived_row(Id::ContactJacobian, "contact_jacobian", TOUCHING, |f| Declaration {
+    Row::derived_row(GeneratedId::ContactJacobian, "contact_jacobian", TOUCHING, |f| Declaration {
         arguments: vec![Q],
         shape: Shape::Matrix(f.contacts.rates, f.nv),
         docs: vec![
@@ -46,7 +46,7 @@ pub const ROWS: &[Row] = &[
         ],
         ..Declaration::default()
     }),
-    Row::derived_row(Id::ContactBias, "contact_bias", TOUCHING, |f| Declaration {
+    Row::derived_row(GeneratedId::ContactBias, "contact_bias", TOUCHING, |f| Declaration {
         arguments: vec![Q, V],
         shape: Shape::Vector(f.contacts.rates),
         docs: vec![
@@ -55,20 +55,22 @@ pub const ROWS: &[Row] = &[
         ],
         ..Declaration::default()
     }),
-    Row::derived_row(Id::ContactLaws, "__contact_laws", TOUCHING, |f| Declaration {
+    Row::derived_row(GeneratedId::ContactLaws, "__contact_laws", TOUCHING, |f| Declaration {
         timeless: true,
         shape: Shape::Array(3 * f.contacts.count),
         ..Declaration::default()
     })
-    .without_batch(),
-    Row::derived_row(Id::PolytopePoses, "__polytope_poses", &[FunctionNeed::Polytopes], |f| Declaration {
-        arguments: vec![Q],
-        shape: Shape::Vector(PAIR_POSE * f.polytopes),
-        ..Declaration::default()
+    .without_batched_variant(),
+    Row::derived_row(GeneratedId::PolytopePoses, "__polytope_poses", &[FunctionNeed::Polytopes], |f| {
+        Declaration {
+            arguments: vec![Q],
+            shape: Shape::Vector(PAIR_POSE * f.polytopes),
+            ..Declaration::default()
+        }
     })
-    .without_batch(),
+    .without_batched_variant(),
     Row::derived_row(
-        Id::ContactResponses,
+        GeneratedId::ContactResponses,
         "__contact_responses",
         &[FunctionNeed::Contacts, FunctionNeed::Inertia, FunctionNeed::FewContacts],
         |f| Declaration {
@@ -77,20 +79,20 @@ pub const ROWS: &[Row] = &[
             ..Declaration::default()
         },
     )
-    .without_batch(),
+    .without_batched_variant(),
     Row::derived_row(
-        Id::ContactDerivatives,
+        GeneratedId::ContactDerivatives,
         "__contact_derivatives",
         &[FunctionNeed::Contacts, FunctionNeed::Inertia, FunctionNeed::Asks(RequestOption::Derivatives)],
         |f| Declaration {
-            arguments: vec![Q, V, A, contact_forces(f)],
+            arguments: vec![Q, V, A, contact_force_argument(f)],
             shape: Shape::Record(Record::ContactDerivatives(f.nv, f.contacts.rates)),
             ..Declaration::default()
         },
     )
-    .without_batch(),
+    .without_batched_variant(),
     Row::derived_row(
-        Id::ContactDerivativesByParameters,
+        GeneratedId::ContactDerivativesByParameters,
         "__contact_derivatives_by_parameters",
         &[
             FunctionNeed::Contacts,
@@ -102,17 +104,17 @@ pub const ROWS: &[Row] = &[
             FunctionNeed::Asks(RequestOption::Sensitivities),
         ],
         |f| Declaration {
-            arguments: vec![Q, V, contact_forces(f)],
+            arguments: vec![Q, V, contact_force_argument(f)],
             shape: Shape::Array(
                 f.parameters * (f.nv + f.contacts.rates + GAP_AND_COEFFICIENTS * f.contacts.count),
             ),
             ..Declaration::default()
         },
     )
-    .without_batch(),
+    .without_batched_variant(),
 ];
 
 /// Returns the argument that contains the forces of all contacts.
-pub(super) fn contact_forces(f: &Facts) -> Argument {
+pub(super) fn contact_force_argument(f: &Facts) -> Argument {
     Argument::Given("forces", SuppliedQuantity::ContactForces, f.contacts.rates)
 }

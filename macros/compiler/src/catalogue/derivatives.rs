@@ -1,9 +1,9 @@
 //! Rows of the catalogue for the functions of the option `derivatives`.
 
 use super::facts::{Facts, FunctionNeed};
-use super::row::{Declaration, Id, Row};
+use super::row::{Declaration, GeneratedId, Row};
 use super::shape::Argument::{A, Q, Tau, U, V};
-use super::shape::{Argument, Called, Record, Shape};
+use super::shape::{Argument, CalledFunction, Record, Shape};
 use crate::mechanism::SuppliedQuantity;
 use crate::syntax::RequestOption;
 
@@ -21,7 +21,7 @@ const CONSTRAINED: &[FunctionNeed] =
 /// Rows of the catalogue for the first derivatives of the dynamics.
 pub const ROWS: &[Row] = &[
     Row::derived_row(
-        Id::MassMatrixInverse,
+        GeneratedId::MassMatrixInverse,
         "mass_matrix_inverse",
         &[FunctionNeed::Inertia, FunctionNeed::Asks(RequestOption::Derivatives), FunctionNeed::RegularMass],
         |f| Declaration {
@@ -34,7 +34,7 @@ pub const ROWS: &[Row] = &[
             ..Declaration::default()
         },
     ),
-    Row::derived_row(Id::CoriolisMatrix, "coriolis_matrix", ASKED, |f| Declaration {
+    Row::derived_row(GeneratedId::CoriolisMatrix, "coriolis_matrix", ASKED, |f| Declaration {
         arguments: vec![Q, V],
         shape: Shape::Square(f.nv),
         docs: vec![
@@ -44,7 +44,7 @@ pub const ROWS: &[Row] = &[
         ],
         ..Declaration::default()
     }),
-    Row::derived_row(Id::InverseDynamicsDerivatives, "inverse_dynamics_derivatives", ASKED, |f| {
+    Row::derived_row(GeneratedId::InverseDynamicsDerivatives, "inverse_dynamics_derivatives", ASKED, |f| {
         Declaration {
             arguments: vec![Q, V, A],
             shape: Shape::Pair(f.nv),
@@ -57,10 +57,13 @@ pub const ROWS: &[Row] = &[
             ..Declaration::default()
         }
     }),
-    Row::derived_row(Id::ForwardDynamicsDerivatives, "forward_dynamics_derivatives", UNCONSTRAINED, |f| {
-        Declaration {
+    Row::derived_row(
+        GeneratedId::ForwardDynamicsDerivatives,
+        "forward_dynamics_derivatives",
+        UNCONSTRAINED,
+        |f| Declaration {
             arguments: vec![Q, V, Tau],
-            shape: forward_derivatives_shape(f),
+            shape: forward_dynamics_derivatives_shape(f),
             docs: vec![
                 "`(∂v̇/∂q, ∂v̇/∂v, ∂v̇/∂τ)` of [`forward_dynamics`](Self::forward_dynamics); the last is \
                  `M⁻¹`.",
@@ -73,9 +76,9 @@ pub const ROWS: &[Row] = &[
                  uniform gravity. If the ground exerts no other force, these six columns are exact.",
             ],
             ..Declaration::default()
-        }
-    }),
-    Row::derived_row(Id::Linearize, "linearize", UNCONSTRAINED, |f| Declaration {
+        },
+    ),
+    Row::derived_row(GeneratedId::Linearize, "linearize", UNCONSTRAINED, |f| Declaration {
         arguments: vec![Q, V, U],
         shape: if f.calls_linear { Shape::CalledLinear(f.nv, f.nu) } else { Shape::Linear(f.nv, f.nu) },
         docs: vec![
@@ -87,7 +90,7 @@ pub const ROWS: &[Row] = &[
         ..Declaration::default()
     }),
     Row::derived_row(
-        Id::AccelerationsAndInverse,
+        GeneratedId::AccelerationsAndInverse,
         "__accelerations_and_inverse",
         &[
             FunctionNeed::Inertia,
@@ -101,8 +104,11 @@ pub const ROWS: &[Row] = &[
             ..Declaration::default()
         },
     ),
-    Row::derived_row(Id::InverseDynamicsDerivativesInto, "inverse_dynamics_derivatives_into", ASKED, |f| {
-        Declaration {
+    Row::derived_row(
+        GeneratedId::InverseDynamicsDerivativesInto,
+        "inverse_dynamics_derivatives_into",
+        ASKED,
+        |f| Declaration {
             arguments: vec![Q, V, A, Argument::Into("by_q", f.nv), Argument::Into("by_v", f.nv)],
             shape: Shape::Pair(f.nv),
             docs: vec![
@@ -111,10 +117,10 @@ pub const ROWS: &[Row] = &[
                 KEPT,
             ],
             ..Declaration::default()
-        }
-    }),
+        },
+    ),
     Row::derived_row(
-        Id::ForwardDynamicsDerivativesInto,
+        GeneratedId::ForwardDynamicsDerivativesInto,
         "forward_dynamics_derivatives_into",
         &[FunctionNeed::Inertia, FunctionNeed::NoConstraints, FunctionNeed::Asks(RequestOption::Derivatives)],
         |f| Declaration {
@@ -123,7 +129,7 @@ pub const ROWS: &[Row] = &[
                 ["by_q", "by_v", "inverse"].map(|name| Argument::Into(name, f.nv)).to_vec(),
             ]
             .concat(),
-            shape: forward_derivatives_shape(f),
+            shape: forward_dynamics_derivatives_shape(f),
             docs: vec![
                 "Writes [`forward_dynamics_derivatives`](Self::forward_dynamics_derivatives) to `by_q`, \
                  `by_v` and `inverse`, `NV` by `NV` each. Returns the accelerations, which equal \
@@ -133,7 +139,7 @@ pub const ROWS: &[Row] = &[
             ..Declaration::default()
         },
     ),
-    Row::derived_row(Id::MotionDerivatives, "__motion_derivatives", CONSTRAINED, |f| {
+    Row::derived_row(GeneratedId::MotionDerivatives, "__motion_derivatives", CONSTRAINED, |f| {
         let nc = constraint_row_count(f);
         Declaration {
             arguments: vec![Q, V, A, Argument::Given("lambda", SuppliedQuantity::Multiplier, nc)],
@@ -141,10 +147,10 @@ pub const ROWS: &[Row] = &[
             ..Declaration::default()
         }
     })
-    .without_batch(),
+    .without_batched_variant(),
     Row::derived_row(
-        Id::PassiveDerivatives,
-        Called::PassiveDerivatives.function_name(),
+        GeneratedId::PassiveDerivatives,
+        CalledFunction::PassiveDerivatives.function_name(),
         &[FunctionNeed::Inertia, FunctionNeed::Asks(RequestOption::Derivatives), FunctionNeed::PassiveCalls],
         |f| Declaration {
             arguments: vec![Q, V],
@@ -152,12 +158,12 @@ pub const ROWS: &[Row] = &[
             ..Declaration::default()
         },
     ),
-    Row::derived_row(Id::InputDerivatives, "__input_derivatives", ASKED, |f| Declaration {
+    Row::derived_row(GeneratedId::InputDerivatives, "__input_derivatives", ASKED, |f| Declaration {
         arguments: vec![Q, V, U],
         shape: Shape::Record(Record::InputDerivatives(f.nv, f.nu)),
         ..Declaration::default()
     })
-    .without_batch(),
+    .without_batched_variant(),
 ];
 
 const MOMENTA: &[FunctionNeed] =
@@ -165,8 +171,11 @@ const MOMENTA: &[FunctionNeed] =
 
 /// Rows of the catalogue for the derivatives of momenta.
 pub const MOMENTUM_ROWS: &[Row] = &[
-    Row::derived_row(Id::GeneralizedMomentumDerivatives, "generalized_momentum_derivatives", MOMENTA, |f| {
-        Declaration {
+    Row::derived_row(
+        GeneratedId::GeneralizedMomentumDerivatives,
+        "generalized_momentum_derivatives",
+        MOMENTA,
+        |f| Declaration {
             arguments: vec![Q, V],
             shape: Shape::Square(f.nv),
             docs: vec![
@@ -175,18 +184,20 @@ pub const MOMENTUM_ROWS: &[Row] = &[
                 TANGENT,
             ],
             ..Declaration::default()
-        }
-    }),
-    Row::derived_row(Id::MomentumRateDerivatives, "momentum_rate_derivatives", MOMENTA, |f| Declaration {
-        arguments: vec![Q, V],
-        shape: Shape::Pair(f.nv),
-        docs: vec![
-            "`(∂ṗ/∂q, ∂ṗ/∂v)` of [`momentum_rate`](Self::momentum_rate).",
-            TANGENT,
-            "Derivatives of Hamilton's second equation, which occur in the Jacobians of discrete steps that \
+        },
+    ),
+    Row::derived_row(GeneratedId::MomentumRateDerivatives, "momentum_rate_derivatives", MOMENTA, |f| {
+        Declaration {
+            arguments: vec![Q, V],
+            shape: Shape::Pair(f.nv),
+            docs: vec![
+                "`(∂ṗ/∂q, ∂ṗ/∂v)` of [`momentum_rate`](Self::momentum_rate).",
+                TANGENT,
+                "Derivatives of Hamilton's second equation, which occur in the Jacobians of discrete steps that \
              are implicit in momenta.",
-        ],
-        ..Declaration::default()
+            ],
+            ..Declaration::default()
+        }
     }),
 ];
 
@@ -198,7 +209,7 @@ const SYMMETRIC: &str = "Along `q ⊕ ε dq` the function changes by `½ ε² dq
 /// Rows of the catalogue for the second derivatives of the dynamics.
 pub const SECOND_ROWS: &[Row] = &[
     Row::derived_row(
-        Id::InverseDynamicsSecondDerivatives,
+        GeneratedId::InverseDynamicsSecondDerivatives,
         "inverse_dynamics_second_derivatives",
         SECOND,
         |f| Declaration {
@@ -216,7 +227,7 @@ pub const SECOND_ROWS: &[Row] = &[
         },
     ),
     Row::derived_row(
-        Id::GeneralizedForcesSecondDerivatives,
+        GeneratedId::GeneralizedForcesSecondDerivatives,
         "generalized_forces_second_derivatives",
         SECOND,
         |f| Declaration {
@@ -232,7 +243,7 @@ pub const SECOND_ROWS: &[Row] = &[
         },
     ),
     Row::derived_row(
-        Id::ConstraintCurvature,
+        GeneratedId::ConstraintCurvature,
         "__constraint_curvature",
         &[
             FunctionNeed::Inertia,
@@ -257,13 +268,13 @@ pub const SECOND_ROWS: &[Row] = &[
             }
         },
     )
-    .without_batch(),
+    .without_batched_variant(),
 ];
 
 fn constraint_row_count(f: &Facts) -> usize {
     f.constraints.map(|c| c.all).unwrap_or_default()
 }
 
-fn forward_derivatives_shape(f: &Facts) -> Shape {
+fn forward_dynamics_derivatives_shape(f: &Facts) -> Shape {
     if f.calls { Shape::CalledForward(f.nv) } else { Shape::Forward(f.nv) }
 }

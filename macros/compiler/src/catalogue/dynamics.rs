@@ -1,9 +1,9 @@
 //! Rows of the catalogue for the functions that every mechanism has.
 
 use super::facts::FunctionNeed;
-use super::row::{Declaration, Id, Row};
+use super::row::{Declaration, GeneratedId, Row};
 use super::shape::Argument::{A, Q, Tau, U, V};
-use super::shape::{Argument, Called, Shape};
+use super::shape::{Argument, CalledFunction, Shape};
 use crate::mechanism::SuppliedQuantity;
 use crate::syntax::RequestOption;
 
@@ -20,14 +20,14 @@ const UNCONSTRAINED: &[FunctionNeed] = &[FunctionNeed::Inertia, FunctionNeed::No
 
 /// Rows of the equations of motion, energies and powers, and of total mass, centre of mass and momentum.
 pub const ROWS: &[Row] = &[
-    Row::derived_row(Id::Neutral, "neutral", &[], |f| Declaration {
+    Row::derived_row(GeneratedId::Neutral, "neutral", &[], |f| Declaration {
         timeless: true,
         shape: Shape::Vector(f.nq),
         docs: vec!["The configuration with zero coordinates and identity quaternions."],
         ..Declaration::default()
     })
-    .without_batch(),
-    Row::derived_row(Id::InitialConfiguration, "initial_configuration", PLACED, |f| Declaration {
+    .without_batched_variant(),
+    Row::derived_row(GeneratedId::InitialConfiguration, "initial_configuration", PLACED, |f| Declaration {
         timeless: true,
         shape: Shape::Vector(f.nq),
         docs: vec![
@@ -36,28 +36,30 @@ pub const ROWS: &[Row] = &[
         ],
         ..Declaration::default()
     })
-    .without_batch(),
-    Row::derived_row(Id::Limits, "__limits", &[FunctionNeed::Limits], |f| Declaration {
+    .without_batched_variant(),
+    Row::derived_row(GeneratedId::Limits, "__limits", &[FunctionNeed::Limits], |f| Declaration {
         timeless: true,
         shape: Shape::Array(f.limits),
         ..Declaration::default()
     })
-    .without_batch(),
-    Row::derived_row(Id::Drawing, "drawing_numbers", &[DRAWING], |f| Declaration {
+    .without_batched_variant(),
+    Row::derived_row(GeneratedId::Drawing, "drawing_numbers", &[DRAWING], |f| Declaration {
         timeless: true,
         shape: Shape::Array(f.drawing),
         docs: vec!["The numbers of [`DRAWING`](Self::DRAWING), m and rad, for the current parameters."],
         ..Declaration::default()
     })
-    .without_batch(),
-    Row::derived_row(Id::Heights, "__drawing_heights", &[DRAWING, FunctionNeed::Terrain], |f| Declaration {
-        timeless: true,
-        arguments: vec![Argument::Given("place", SuppliedQuantity::Position, 2)],
-        shape: Shape::Array(f.heights),
-        ..Declaration::default()
+    .without_batched_variant(),
+    Row::derived_row(GeneratedId::Heights, "__drawing_heights", &[DRAWING, FunctionNeed::Terrain], |f| {
+        Declaration {
+            timeless: true,
+            arguments: vec![Argument::Given("place", SuppliedQuantity::Position, 2)],
+            shape: Shape::Array(f.heights),
+            ..Declaration::default()
+        }
     })
-    .without_batch(),
-    Row::derived_row(Id::MassMatrix, "mass_matrix", INERTIA, |f| Declaration {
+    .without_batched_variant(),
+    Row::derived_row(GeneratedId::MassMatrix, "mass_matrix", INERTIA, |f| Declaration {
         arguments: vec![Q],
         shape: Shape::Square(f.nv),
         docs: vec![
@@ -81,7 +83,7 @@ pub const ROWS: &[Row] = &[
         ..Declaration::default()
     })
     .with_trait_arguments(&[Q]),
-    Row::derived_row(Id::BiasForces, "bias_forces", INERTIA, |f| Declaration {
+    Row::derived_row(GeneratedId::BiasForces, "bias_forces", INERTIA, |f| Declaration {
         arguments: vec![Q, V],
         shape: Shape::Vector(f.nv),
         docs: vec![
@@ -92,7 +94,7 @@ pub const ROWS: &[Row] = &[
         ..Declaration::default()
     })
     .with_trait_arguments(&[Q, V]),
-    Row::derived_row(Id::InverseDynamics, "inverse_dynamics", INERTIA, |f| Declaration {
+    Row::derived_row(GeneratedId::InverseDynamics, "inverse_dynamics", INERTIA, |f| Declaration {
         arguments: vec![Q, V, A],
         shape: Shape::Vector(f.nv),
         docs: vec![
@@ -111,7 +113,7 @@ pub const ROWS: &[Row] = &[
         ..Declaration::default()
     })
     .with_trait_arguments(&[Q, V, A]),
-    Row::derived_row(Id::ForwardDynamics, "forward_dynamics", UNCONSTRAINED, |f| Declaration {
+    Row::derived_row(GeneratedId::ForwardDynamics, "forward_dynamics", UNCONSTRAINED, |f| Declaration {
         arguments: vec![Q, V, Tau],
         shape: Shape::Vector(f.nv),
         docs: match f.acceleration_forces {
@@ -132,7 +134,7 @@ pub const ROWS: &[Row] = &[
         ..Declaration::default()
     })
     .with_trait_arguments(&[Q, V, Tau]),
-    Row::derived_row(Id::GeneralizedForces, "generalized_forces", &[], |f| Declaration {
+    Row::derived_row(GeneratedId::GeneralizedForces, "generalized_forces", &[], |f| Declaration {
         arguments: if f.velocity_inputs { vec![Q, V, U] } else { vec![Q, U] },
         shape: Shape::Vector(f.nv),
         docs: vec![
@@ -142,7 +144,7 @@ pub const ROWS: &[Row] = &[
         ..Declaration::default()
     })
     .with_trait_arguments(&[Q, V, U]),
-    Row::derived_row(Id::KineticEnergy, "kinetic_energy", INERTIA, |f| Declaration {
+    Row::derived_row(GeneratedId::KineticEnergy, "kinetic_energy", INERTIA, |f| Declaration {
         arguments: vec![Q, V],
         shape: Shape::Scalar,
         docs: vec![match f.time {
@@ -155,14 +157,14 @@ pub const ROWS: &[Row] = &[
         ..Declaration::default()
     })
     .with_trait_arguments(&[Q, V]),
-    Row::derived_row(Id::PotentialEnergy, "potential_energy", INERTIA, |_| Declaration {
+    Row::derived_row(GeneratedId::PotentialEnergy, "potential_energy", INERTIA, |_| Declaration {
         arguments: vec![Q],
         shape: Shape::Scalar,
         docs: vec!["Potential energy `U(q)` of gravity (zero at the ground's origin) and springs, J."],
         ..Declaration::default()
     })
     .with_trait_arguments(&[Q]),
-    Row::derived_row(Id::GeneralizedMomentum, "generalized_momentum", INERTIA, |f| Declaration {
+    Row::derived_row(GeneratedId::GeneralizedMomentum, "generalized_momentum", INERTIA, |f| Declaration {
         arguments: vec![Q, V],
         shape: Shape::Vector(f.nv),
         docs: vec![match f.time {
@@ -175,7 +177,7 @@ pub const ROWS: &[Row] = &[
         ..Declaration::default()
     })
     .with_trait_arguments(&[Q, V]),
-    Row::derived_row(Id::MomentumRate, "momentum_rate", INERTIA, |f| Declaration {
+    Row::derived_row(GeneratedId::MomentumRate, "momentum_rate", INERTIA, |f| Declaration {
         arguments: vec![Q, V],
         shape: Shape::Vector(f.nv),
         docs: vec![
@@ -192,7 +194,7 @@ pub const ROWS: &[Row] = &[
         ..Declaration::default()
     })
     .with_trait_arguments(&[Q, V]),
-    Row::derived_row(Id::DissipatedPower, "dissipated_power", INERTIA, |_| {
+    Row::derived_row(GeneratedId::DissipatedPower, "dissipated_power", INERTIA, |_| {
         power_declaration(
             vec![Q, V],
             vec![
@@ -202,10 +204,10 @@ pub const ROWS: &[Row] = &[
             ],
         )
     }),
-    Row::derived_row(Id::ControlPower, "control_power", INERTIA, |_| {
+    Row::derived_row(GeneratedId::ControlPower, "control_power", INERTIA, |_| {
         power_declaration(vec![Q, V, U], vec!["Power of the inputs `u`, W."])
     }),
-    Row::derived_row(Id::DisturbancePower, "disturbance_power", INERTIA, |f| {
+    Row::derived_row(GeneratedId::DisturbancePower, "disturbance_power", INERTIA, |f| {
         power_declaration(
             vec![Q, V],
             vec![match f.acceleration_forces {
@@ -219,20 +221,20 @@ pub const ROWS: &[Row] = &[
             }],
         )
     }),
-    Row::derived_row(Id::TotalMass, "total_mass", INERTIA, |_| Declaration {
+    Row::derived_row(GeneratedId::TotalMass, "total_mass", INERTIA, |_| Declaration {
         timeless: true,
         shape: Shape::Scalar,
         docs: vec!["Mass of everything that moves, kg."],
         ..Declaration::default()
     })
-    .without_batch(),
-    Row::derived_row(Id::CenterOfMass, "center_of_mass", INERTIA, |_| Declaration {
+    .without_batched_variant(),
+    Row::derived_row(GeneratedId::CenterOfMass, "center_of_mass", INERTIA, |_| Declaration {
         arguments: vec![Q],
         shape: Shape::Vector(3),
         docs: vec!["Centre of mass of everything that moves, m, from the ground's origin in ground axes."],
         ..Declaration::default()
     }),
-    Row::derived_row(Id::Momentum, "momentum", INERTIA, |_| Declaration {
+    Row::derived_row(GeneratedId::Momentum, "momentum", INERTIA, |_| Declaration {
         arguments: vec![Q, V],
         shape: Shape::Vector(6),
         docs: vec![
@@ -241,8 +243,8 @@ pub const ROWS: &[Row] = &[
         ..Declaration::default()
     }),
     Row::derived_row(
-        Id::PassiveForces,
-        Called::PassiveForces.function_name(),
+        GeneratedId::PassiveForces,
+        CalledFunction::PassiveForces.function_name(),
         &[FunctionNeed::Inertia, FunctionNeed::PassiveCalls],
         |f| Declaration { arguments: vec![Q, V], shape: Shape::Vector(f.nv), ..Declaration::default() },
     ),

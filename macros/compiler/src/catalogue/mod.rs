@@ -17,14 +17,14 @@ mod shape;
 mod speeds;
 mod written;
 
-pub use constants::{absent_constants, is_constant};
+pub use constants::{absent_constants, is_known_constant_name};
 pub use facts::{ConstraintFacts, ContactCounts, Facts, FunctionNeed};
 pub use outputs::{
     BY_PARAMETERS, DERIVATIVES, JACOBIAN, REACTION, TOUCHED, contact_force_function, output_functions,
     reaction_function,
 };
-pub use row::{BodyOrigin, Declaration, DeclaredFunction, Id, Row};
-pub use shape::{Argument, Called, InverseForm, Record, RecordField, Shape, Structure};
+pub use row::{Declaration, DeclaredFunction, FunctionBodyOrigin, GeneratedId, Row};
+pub use shape::{Argument, CalledFunction, InverseForm, MatrixStructure, Record, RecordField, Shape};
 
 /// The rows, in the order in which functions are generated. The functions of the outputs are generated after
 /// the first [`BEFORE_OUTPUTS`] tables.
@@ -55,8 +55,8 @@ pub fn function_catalogue_rows() -> impl Iterator<Item = &'static Row> {
 fn declared_functions(tables: &[&'static [Row]], facts: &Facts) -> Vec<DeclaredFunction> {
     let present = tables.iter().copied().flatten().filter(|row| row.first_unmet_need(facts).is_none());
     let derived = present.filter_map(|row| match row.made {
-        BodyOrigin::Derived(id) => Some(row.declare_function(id, facts)),
-        BodyOrigin::Written => None,
+        FunctionBodyOrigin::Derived(id) => Some(row.declare_function(id, facts)),
+        FunctionBodyOrigin::Written => None,
     });
     derived.collect()
 }
@@ -100,8 +100,8 @@ pub fn absent_functions(facts: &Facts) -> Vec<(FunctionNeed, Vec<&'static Row>)>
 
 /// Returns the names of the functions with handwritten bodies that also have a batched variant.
 pub fn handwritten_batched_functions(facts: &Facts) -> impl Iterator<Item = &'static str> {
-    let written =
-        function_catalogue_rows().filter(|row| row.batched && matches!(row.made, BodyOrigin::Written));
+    let written = function_catalogue_rows()
+        .filter(|row| row.batched && matches!(row.made, FunctionBodyOrigin::Written));
     written.filter(|row| row.first_unmet_need(facts).is_none()).map(|row| row.name)
 }
 

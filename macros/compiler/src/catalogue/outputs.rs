@@ -1,8 +1,8 @@
 //! Declarations of the functions of a mechanism's outputs.
 
-use super::contacts::contact_forces;
+use super::contacts::contact_force_argument;
 use super::facts::Facts;
-use super::row::{DeclaredFunction, Id};
+use super::row::{DeclaredFunction, GeneratedId};
 use super::shape::Argument::{A, Q, T, U, V};
 use super::shape::{Argument, Shape};
 use crate::mechanism::{SuppliedQuantity, UsedQuantities};
@@ -32,8 +32,8 @@ fn shape_of_size(size: usize) -> Shape {
     }
 }
 
-fn declared_output(
-    id: Id,
+fn declare_output_function(
+    id: GeneratedId,
     name: String,
     arguments: &[Argument],
     shape: Shape,
@@ -59,8 +59,14 @@ pub fn output_functions(name: &str, size: usize, uses: UsedQuantities, f: &Facts
         ),
         false => format!("The output `{name}`."),
     };
-    let mut functions =
-        vec![declared_output(Id::Output, name.to_string(), &arguments, shape_of_size(size), vec![about], f)];
+    let mut functions = vec![declare_output_function(
+        GeneratedId::Output,
+        name.to_string(),
+        &arguments,
+        shape_of_size(size),
+        vec![about],
+        f,
+    )];
     if size == MATRIX {
         return functions;
     }
@@ -71,8 +77,8 @@ pub fn output_functions(name: &str, size: usize, uses: UsedQuantities, f: &Facts
         };
         let docs = vec![format!("Jacobian of the output `{name}`: {what}.")];
         let shape = Shape::Matrix(size, f.nv);
-        functions.push(declared_output(
-            Id::OutputJacobian,
+        functions.push(declare_output_function(
+            GeneratedId::OutputJacobian,
             format!("{name}{JACOBIAN}"),
             &arguments,
             shape,
@@ -92,7 +98,14 @@ pub fn output_functions(name: &str, size: usize, uses: UsedQuantities, f: &Facts
         ];
         let shape = Shape::Jacobians(size, f.nv, f.nu);
         let name = format!("{name}{DERIVATIVES}");
-        functions.push(declared_output(Id::OutputDerivatives, name, &arguments, shape, docs, f));
+        functions.push(declare_output_function(
+            GeneratedId::OutputDerivatives,
+            name,
+            &arguments,
+            shape,
+            docs,
+            f,
+        ));
     }
     if f.requests.sensitivities {
         let docs = vec![format!(
@@ -101,7 +114,14 @@ pub fn output_functions(name: &str, size: usize, uses: UsedQuantities, f: &Facts
         )];
         let shape = Shape::Matrix(size, f.parameters);
         let name = format!("{name}{BY_PARAMETERS}");
-        functions.push(declared_output(Id::OutputByParameters, name, &arguments, shape, docs, f));
+        functions.push(declare_output_function(
+            GeneratedId::OutputByParameters,
+            name,
+            &arguments,
+            shape,
+            docs,
+            f,
+        ));
     }
     functions
 }
@@ -113,8 +133,15 @@ pub fn reaction_function(name: &str, size: usize, is_diagram: bool, f: &Facts) -
     arguments.extend((f.nu > 0).then_some(U));
     arguments.extend(f.constraints.map(|c| Argument::Given("lambda", SuppliedQuantity::Multiplier, c.all)));
     let touched = is_diagram && f.contacts.count > 0;
-    arguments.extend(touched.then_some(contact_forces(f)));
-    declared_output(Id::Reaction, format!("{REACTION}{name}"), &arguments, shape_of_size(size), Vec::new(), f)
+    arguments.extend(touched.then_some(contact_force_argument(f)));
+    declare_output_function(
+        GeneratedId::Reaction,
+        format!("{REACTION}{name}"),
+        &arguments,
+        shape_of_size(size),
+        Vec::new(),
+        f,
+    )
 }
 
 /// Returns the hidden function of an output that contains contact forces. It takes the state, the inputs and
@@ -122,6 +149,13 @@ pub fn reaction_function(name: &str, size: usize, is_diagram: bool, f: &Facts) -
 pub fn contact_force_function(name: &str, size: usize, f: &Facts) -> DeclaredFunction {
     let mut arguments = vec![Q, V];
     arguments.extend((f.nu > 0).then_some(U));
-    arguments.push(contact_forces(f));
-    declared_output(Id::Touched, format!("{TOUCHED}{name}"), &arguments, shape_of_size(size), Vec::new(), f)
+    arguments.push(contact_force_argument(f));
+    declare_output_function(
+        GeneratedId::Touched,
+        format!("{TOUCHED}{name}"),
+        &arguments,
+        shape_of_size(size),
+        Vec::new(),
+        f,
+    )
 }

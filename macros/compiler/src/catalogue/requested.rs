@@ -2,7 +2,7 @@
 //! `sensitivities` and `packed`.
 
 use super::facts::FunctionNeed;
-use super::row::{Declaration, Id, Row};
+use super::row::{Declaration, GeneratedId, Row};
 use super::shape::Argument::{A, Q, Tau, V};
 use super::shape::{Argument, Shape};
 use crate::syntax::RequestOption;
@@ -22,8 +22,11 @@ const PACKED: &[FunctionNeed] = &[FunctionNeed::Inertia, FunctionNeed::Asks(Requ
 
 /// Rows of the functions of the option `centroidal`.
 pub const CENTROIDAL: &[Row] = &[
-    Row::derived_row(Id::CentroidalMomentumMatrix, "centroidal_momentum_matrix", CENTROIDAL_ASKED, |f| {
-        Declaration {
+    Row::derived_row(
+        GeneratedId::CentroidalMomentumMatrix,
+        "centroidal_momentum_matrix",
+        CENTROIDAL_ASKED,
+        |f| Declaration {
             arguments: vec![Q],
             shape: Shape::Matrix(6, f.nv),
             docs: vec![
@@ -34,10 +37,13 @@ pub const CENTROIDAL: &[Row] = &[
                  *Centroidal dynamics of a humanoid robot*, 2013).",
             ],
             ..Declaration::default()
-        }
-    }),
-    Row::derived_row(Id::CentroidalMomentumBias, "centroidal_momentum_bias", CENTROIDAL_ASKED, |_| {
-        Declaration {
+        },
+    ),
+    Row::derived_row(
+        GeneratedId::CentroidalMomentumBias,
+        "centroidal_momentum_bias",
+        CENTROIDAL_ASKED,
+        |_| Declaration {
             arguments: vec![Q, V],
             shape: Shape::Vector(6),
             docs: vec![
@@ -45,13 +51,13 @@ pub const CENTROIDAL: &[Row] = &[
              accelerations. In every motion the rate of the momentum is `A v̇ + Ȧ v`.",
             ],
             ..Declaration::default()
-        }
-    }),
+        },
+    ),
 ];
 
 /// Rows of the functions of the options `hamilton`, `routh` and `conserved`.
 pub const CANONICAL: &[Row] = &[
-    Row::derived_row(Id::Hamiltonian, "hamiltonian", HAMILTON, |f| Declaration {
+    Row::derived_row(GeneratedId::Hamiltonian, "hamiltonian", HAMILTON, |f| Declaration {
         arguments: vec![Q, Argument::Momenta(f.nv)],
         shape: Shape::Scalar,
         docs: vec![match f.time {
@@ -67,7 +73,7 @@ pub const CANONICAL: &[Row] = &[
         }],
         ..Declaration::default()
     }),
-    Row::derived_row(Id::CanonicalVelocity, "canonical_velocity", HAMILTON, |f| Declaration {
+    Row::derived_row(GeneratedId::CanonicalVelocity, "canonical_velocity", HAMILTON, |f| Declaration {
         arguments: vec![Q, Argument::Momenta(f.nv)],
         shape: Shape::Vector(f.nv),
         docs: vec![
@@ -76,17 +82,19 @@ pub const CANONICAL: &[Row] = &[
         ],
         ..Declaration::default()
     }),
-    Row::derived_row(Id::CanonicalMomentumRate, "canonical_momentum_rate", HAMILTON, |f| Declaration {
-        arguments: vec![Q, Argument::Momenta(f.nv), Tau],
-        shape: Shape::Vector(f.nv),
-        docs: vec![
-            "Hamilton's second equation: `ṗ = −∂H/∂q + τ` plus passive forces without a potential, N and \
+    Row::derived_row(GeneratedId::CanonicalMomentumRate, "canonical_momentum_rate", HAMILTON, |f| {
+        Declaration {
+            arguments: vec![Q, Argument::Momenta(f.nv), Tau],
+            shape: Shape::Vector(f.nv),
+            docs: vec![
+                "Hamilton's second equation: `ṗ = −∂H/∂q + τ` plus passive forces without a potential, N and \
              N·m; for ball and free joints in body components (Lie and Poisson). Include constraint forces \
              in `tau`.",
-        ],
-        ..Declaration::default()
+            ],
+            ..Declaration::default()
+        }
     }),
-    Row::derived_row(Id::Routhian, "routhian", ROUTH, |f| Declaration {
+    Row::derived_row(GeneratedId::Routhian, "routhian", ROUTH, |f| Declaration {
         arguments: vec![Q, V, Argument::Momenta(f.cyclic)],
         shape: Shape::Scalar,
         docs: vec![
@@ -98,7 +106,7 @@ pub const CANONICAL: &[Row] = &[
         ],
         ..Declaration::default()
     }),
-    Row::derived_row(Id::CyclicVelocities, "cyclic_velocities", ROUTH, |f| Declaration {
+    Row::derived_row(GeneratedId::CyclicVelocities, "cyclic_velocities", ROUTH, |f| Declaration {
         arguments: vec![Q, V, Argument::Momenta(f.cyclic)],
         shape: Shape::Vector(f.cyclic),
         docs: vec![
@@ -107,7 +115,7 @@ pub const CANONICAL: &[Row] = &[
         ],
         ..Declaration::default()
     }),
-    Row::derived_row(Id::ReducedAccelerations, "reduced_accelerations", ROUTH, |f| Declaration {
+    Row::derived_row(GeneratedId::ReducedAccelerations, "reduced_accelerations", ROUTH, |f| Declaration {
         arguments: vec![Q, V, Argument::Momenta(f.cyclic), Tau],
         shape: Shape::Vector(f.nv.saturating_sub(f.cyclic)),
         docs: vec![
@@ -118,7 +126,7 @@ pub const CANONICAL: &[Row] = &[
         ],
         ..Declaration::default()
     }),
-    Row::derived_row(Id::Conserved, "conserved", CONSERVED, |f| Declaration {
+    Row::derived_row(GeneratedId::Conserved, "conserved", CONSERVED, |f| Declaration {
         arguments: vec![Q, V],
         shape: Shape::Vector(f.conserved),
         docs: vec![
@@ -132,19 +140,21 @@ pub const CANONICAL: &[Row] = &[
 /// Rows of the functions of the options `regressor`, `sensitivities` and `packed`, and of the checks of
 /// parameters.
 pub const ROWS: &[Row] = &[
-    Row::derived_row(Id::JointTorqueRegressor, "joint_torque_regressor", REGRESSOR, |f| Declaration {
-        arguments: vec![Q, V, A],
-        shape: Shape::Matrix(f.nv, STANDARD * f.bodies),
-        docs: vec![
-            "Regressor `Y(q, v, a)`: without springs, friction and other elements, \
+    Row::derived_row(GeneratedId::JointTorqueRegressor, "joint_torque_regressor", REGRESSOR, |f| {
+        Declaration {
+            arguments: vec![Q, V, A],
+            shape: Shape::Matrix(f.nv, STANDARD * f.bodies),
+            docs: vec![
+                "Regressor `Y(q, v, a)`: without springs, friction and other elements, \
              [`inverse_dynamics`](Self::inverse_dynamics) is `Y π`, with the \
              [`standard_parameters`](Self::standard_parameters) `π`.",
-            "Atkeson, An and Hollerbach, *Estimation of inertial parameters of manipulator loads and links* \
+                "Atkeson, An and Hollerbach, *Estimation of inertial parameters of manipulator loads and links* \
              (1986); columns as in Pinocchio.",
-        ],
-        ..Declaration::default()
+            ],
+            ..Declaration::default()
+        }
     }),
-    Row::derived_row(Id::StandardParameters, "standard_parameters", REGRESSOR, |f| Declaration {
+    Row::derived_row(GeneratedId::StandardParameters, "standard_parameters", REGRESSOR, |f| Declaration {
         timeless: true,
         shape: Shape::Vector(STANDARD * f.bodies),
         docs: vec![
@@ -154,8 +164,8 @@ pub const ROWS: &[Row] = &[
         ],
         ..Declaration::default()
     })
-    .without_batch(),
-    Row::derived_row(Id::BaseRegressor, "base_regressor", REGRESSOR, |f| Declaration {
+    .without_batched_variant(),
+    Row::derived_row(GeneratedId::BaseRegressor, "base_regressor", REGRESSOR, |f| Declaration {
         arguments: vec![Q, V, A],
         shape: Shape::Matrix(f.nv, f.base),
         docs: vec![
@@ -165,7 +175,7 @@ pub const ROWS: &[Row] = &[
         ],
         ..Declaration::default()
     }),
-    Row::derived_row(Id::BaseParameters, "base_parameters", REGRESSOR, |f| Declaration {
+    Row::derived_row(GeneratedId::BaseParameters, "base_parameters", REGRESSOR, |f| Declaration {
         timeless: true,
         arguments: vec![Argument::Standard(STANDARD * f.bodies)],
         shape: Shape::Vector(f.base),
@@ -180,7 +190,7 @@ pub const ROWS: &[Row] = &[
         ],
     }),
     Row::derived_row(
-        Id::InverseDynamicsByParameters,
+        GeneratedId::InverseDynamicsByParameters,
         "inverse_dynamics_by_parameters",
         &[FunctionNeed::Inertia, FunctionNeed::Asks(RequestOption::Sensitivities)],
         |f| Declaration {
@@ -194,7 +204,7 @@ pub const ROWS: &[Row] = &[
         },
     ),
     Row::derived_row(
-        Id::ForwardDynamicsByParameters,
+        GeneratedId::ForwardDynamicsByParameters,
         "forward_dynamics_by_parameters",
         &[
             FunctionNeed::Inertia,
@@ -213,7 +223,7 @@ pub const ROWS: &[Row] = &[
         },
     ),
     Row::derived_row(
-        Id::GeneralizedForcesByParameters,
+        GeneratedId::GeneralizedForcesByParameters,
         "generalized_forces_by_parameters",
         &[FunctionNeed::Inertia, FunctionNeed::Asks(RequestOption::Sensitivities)],
         |f| Declaration {
@@ -226,7 +236,7 @@ pub const ROWS: &[Row] = &[
             ..Declaration::default()
         },
     ),
-    Row::derived_row(Id::MassMatrixPacked, "mass_matrix_packed", PACKED, |f| Declaration {
+    Row::derived_row(GeneratedId::MassMatrixPacked, "mass_matrix_packed", PACKED, |f| Declaration {
         arguments: vec![Q],
         shape: Shape::Vector(f.entries.len()),
         docs: vec![
@@ -235,7 +245,7 @@ pub const ROWS: &[Row] = &[
         ],
         ..Declaration::default()
     }),
-    Row::derived_row(Id::MassMatrixInto, "mass_matrix_into", PACKED, |f| Declaration {
+    Row::derived_row(GeneratedId::MassMatrixInto, "mass_matrix_into", PACKED, |f| Declaration {
         arguments: vec![Q, Argument::Into("m", f.nv)],
         shape: Shape::Symmetric(f.nv),
         docs: vec![
@@ -245,10 +255,10 @@ pub const ROWS: &[Row] = &[
         ],
         ..Declaration::default()
     }),
-    Row::derived_row(Id::Figures, "__figures", &[FunctionNeed::Parameters], |f| Declaration {
+    Row::derived_row(GeneratedId::Figures, "__figures", &[FunctionNeed::Parameters], |f| Declaration {
         timeless: true,
         shape: Shape::Array(f.figures),
         ..Declaration::default()
     })
-    .without_batch(),
+    .without_batched_variant(),
 ];

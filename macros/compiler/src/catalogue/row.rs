@@ -6,7 +6,7 @@ use super::shape::{Argument, Shape};
 /// Identifiers of all functions that are derived from equations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs, reason = "the rows say what each is")]
-pub enum Id {
+pub enum GeneratedId {
     Neutral,
     InitialConfiguration,
     Limits,
@@ -99,9 +99,9 @@ pub enum Id {
 
 /// Origin of the body of a catalogued function.
 #[derive(Clone, Copy)]
-pub enum BodyOrigin {
+pub enum FunctionBodyOrigin {
     /// Body derived from equations, which the identifier selects.
-    Derived(Id),
+    Derived(GeneratedId),
     /// Handwritten body, which calls other functions and the runtime.
     Written,
 }
@@ -112,7 +112,7 @@ pub struct Row {
     /// Name of the catalogued function.
     pub name: &'static str,
     /// Origin of the catalogued function's body.
-    pub made: BodyOrigin,
+    pub made: FunctionBodyOrigin,
     /// Requirements of the function. The first requirement that is not met is reported as the reason for its
     /// absence.
     pub needs: &'static [FunctionNeed],
@@ -142,7 +142,7 @@ pub struct Declaration {
 #[derive(Clone, Debug)]
 pub struct DeclaredFunction {
     /// Identifier of the function in the catalogue.
-    pub id: Id,
+    pub id: GeneratedId,
     /// Name of the generated function.
     pub name: String,
     /// Documentation of the function, one entry per paragraph. Empty for a hidden function.
@@ -156,12 +156,12 @@ pub struct DeclaredFunction {
 impl Row {
     /// Creates a row of a function that is derived from equations and has a batched variant.
     pub const fn derived_row(
-        id: Id,
+        id: GeneratedId,
         name: &'static str,
         needs: &'static [FunctionNeed],
         declare: fn(&Facts) -> Declaration,
     ) -> Row {
-        Row { name, made: BodyOrigin::Derived(id), needs, declare, in_trait: None, batched: true }
+        Row { name, made: FunctionBodyOrigin::Derived(id), needs, declare, in_trait: None, batched: true }
     }
 
     /// Creates the row of a handwritten function.
@@ -169,7 +169,7 @@ impl Row {
         let empty_declaration = |_: &Facts| Declaration::default();
         Row {
             name,
-            made: BodyOrigin::Written,
+            made: FunctionBodyOrigin::Written,
             needs,
             declare: empty_declaration,
             in_trait: None,
@@ -183,7 +183,7 @@ impl Row {
     }
 
     /// Removes the batched variant: the function depends on no state, or is a helper.
-    pub const fn without_batch(self) -> Row {
+    pub const fn without_batched_variant(self) -> Row {
         Row { batched: false, ..self }
     }
 
@@ -203,7 +203,7 @@ impl Row {
     }
 
     /// Returns the declaration of the function for a mechanism with these facts.
-    pub fn declare_function(&self, id: Id, facts: &Facts) -> DeclaredFunction {
+    pub fn declare_function(&self, id: GeneratedId, facts: &Facts) -> DeclaredFunction {
         let Declaration { arguments, timeless, shape, docs } = (self.declare)(facts);
         let time = (facts.time && !timeless).then_some(Argument::T);
         DeclaredFunction {

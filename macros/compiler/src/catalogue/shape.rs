@@ -28,12 +28,12 @@ pub enum Argument {
     /// Generalized momenta `p`, one for each velocity.
     Momenta(usize),
     /// Results of another function that the body calls first. Does not occur in the signature.
-    Called(Called),
+    Called(CalledFunction),
 }
 
 /// A function that other functions call first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Called {
+pub enum CalledFunction {
     /// The generated function that computes the passive forces.
     PassiveForces,
     /// The generated function that computes the derivatives of the passive forces.
@@ -42,24 +42,25 @@ pub enum Called {
     ContactFeatures,
 }
 
-impl Called {
+impl CalledFunction {
     /// All functions that other generated functions call.
-    pub const ALL: [Called; 3] = [Called::PassiveForces, Called::PassiveDerivatives, Called::ContactFeatures];
+    pub const ALL: [CalledFunction; 3] =
+        [CalledFunction::PassiveForces, CalledFunction::PassiveDerivatives, CalledFunction::ContactFeatures];
 
     /// Returns the name of the called function.
     pub const fn function_name(self) -> &'static str {
         match self {
-            Called::PassiveForces => "__passive_forces",
-            Called::PassiveDerivatives => "__passive_derivatives",
-            Called::ContactFeatures => "__contact_features",
+            CalledFunction::PassiveForces => "__passive_forces",
+            CalledFunction::PassiveDerivatives => "__passive_derivatives",
+            CalledFunction::ContactFeatures => "__contact_features",
         }
     }
 
     /// Returns the arguments of the called function, except time.
     pub const fn arguments(self) -> &'static [Argument] {
         match self {
-            Called::PassiveForces | Called::PassiveDerivatives => &[Argument::Q, Argument::V],
-            Called::ContactFeatures => &[Argument::Q],
+            CalledFunction::PassiveForces | CalledFunction::PassiveDerivatives => &[Argument::Q, Argument::V],
+            CalledFunction::ContactFeatures => &[Argument::Q],
         }
     }
 }
@@ -67,7 +68,7 @@ impl Called {
 impl Argument {
     /// Returns the number of values of the argument, given `NQ`, `NV` and `NU`. Zero for results of other
     /// functions and for matrices that receive results.
-    pub fn length(self, [nq, nv, nu]: [usize; 3]) -> usize {
+    pub fn argument_length(self, [nq, nv, nu]: [usize; 3]) -> usize {
         match self {
             Argument::T => 1,
             Argument::Q => nq,
@@ -94,15 +95,15 @@ impl Argument {
             Argument::Standard(_) => "standard",
             Argument::Factors(_) => "lambda",
             Argument::Momenta(_) => "p",
-            Argument::Called(Called::PassiveForces) => "passive",
-            Argument::Called(Called::PassiveDerivatives) => "change",
-            Argument::Called(Called::ContactFeatures) => "feature",
+            Argument::Called(CalledFunction::PassiveForces) => "passive",
+            Argument::Called(CalledFunction::PassiveDerivatives) => "change",
+            Argument::Called(CalledFunction::ContactFeatures) => "feature",
         }
     }
 
     /// Returns the index in the argument of the quantity of a symbol, `None` if the argument does not contain
     /// it.
-    pub fn index(self, quantity: Quantity) -> Option<usize> {
+    pub fn index_of_quantity(self, quantity: Quantity) -> Option<usize> {
         match (self, quantity) {
             (Argument::Q, Quantity::Configuration(k))
             | (Argument::V, Quantity::Velocity(k))
@@ -114,9 +115,9 @@ impl Argument {
             | (Argument::Standard(_), Quantity::Given(SuppliedQuantity::Inertia, k))
             | (Argument::Factors(_), Quantity::Given(SuppliedQuantity::Factor, k))
             | (Argument::Momenta(_), Quantity::Momentum(k))
-            | (Argument::Called(Called::PassiveForces), Quantity::PassiveForce(k))
-            | (Argument::Called(Called::PassiveDerivatives), Quantity::PassiveDerivative(k))
-            | (Argument::Called(Called::ContactFeatures), Quantity::ContactFeature(k)) => Some(k),
+            | (Argument::Called(CalledFunction::PassiveForces), Quantity::PassiveForce(k))
+            | (Argument::Called(CalledFunction::PassiveDerivatives), Quantity::PassiveDerivative(k))
+            | (Argument::Called(CalledFunction::ContactFeatures), Quantity::ContactFeature(k)) => Some(k),
             _ => None,
         }
     }
@@ -220,7 +221,7 @@ impl Shape {
     }
 
     /// Returns the number of outputs of a program for this result.
-    pub fn output_count(self, structure: &Structure) -> usize {
+    pub fn output_count(self, structure: &MatrixStructure) -> usize {
         let border_entry_count = |n: usize| n * structure.inverse.extra_values_per_velocity();
         match self {
             Shape::Scalar => 1,
@@ -238,7 +239,7 @@ impl Shape {
             Shape::CalledForward(n) => n * structure.known.iter().map(Vec::len).sum::<usize>(),
             Shape::CalledLinear(n, m) => n + 3 * n * n + n * m,
             Shape::Symmetric(_) => structure.entries.len(),
-            Shape::Record(record) => record.record_fields().iter().map(|field| field.length()).sum(),
+            Shape::Record(record) => record.record_fields().iter().map(|field| field.field_length()).sum(),
         }
     }
 }
@@ -277,7 +278,7 @@ pub struct RecordField {
 
 impl RecordField {
     /// Returns the number of values that the field contains.
-    pub fn length(&self) -> usize {
+    pub fn field_length(&self) -> usize {
         self.rows * self.columns.unwrap_or(1)
     }
 }
@@ -376,7 +377,7 @@ impl InverseForm {
 
 /// Structure of the matrices that a generated function returns.
 #[derive(Clone, Debug, Default)]
-pub struct Structure {
+pub struct MatrixStructure {
     /// Form in which the inverse mass matrix is returned.
     pub inverse: InverseForm,
     /// Row and column of the outputs that are entries of a matrix, none of them above the diagonal.

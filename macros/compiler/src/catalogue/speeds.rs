@@ -2,7 +2,7 @@
 //! velocities.
 
 use super::facts::FunctionNeed;
-use super::row::{Declaration, Id, Row};
+use super::row::{Declaration, GeneratedId, Row};
 use super::shape::Argument::{A, Q, V};
 use super::shape::Shape;
 use crate::syntax::RequestOption;
@@ -11,7 +11,7 @@ const SPEEDS: &[FunctionNeed] = &[FunctionNeed::Speeds];
 
 /// Rows of the conversions between generalized speeds and joint velocities.
 pub const ROWS: &[Row] = &[
-    Row::derived_row(Id::RatesOfSpeeds, "rates_of_speeds", SPEEDS, |f| Declaration {
+    Row::derived_row(GeneratedId::RatesOfSpeeds, "rates_of_speeds", SPEEDS, |f| Declaration {
         arguments: vec![Q, V],
         timeless: true,
         shape: Shape::Vector(f.nv),
@@ -23,7 +23,7 @@ pub const ROWS: &[Row] = &[
              joint velocities.",
         ],
     }),
-    Row::derived_row(Id::SpeedsOfRates, "speeds_of_rates", SPEEDS, |f| Declaration {
+    Row::derived_row(GeneratedId::SpeedsOfRates, "speeds_of_rates", SPEEDS, |f| Declaration {
         arguments: vec![Q, V],
         timeless: true,
         shape: Shape::Vector(f.nv),
@@ -32,39 +32,39 @@ pub const ROWS: &[Row] = &[
              [`rates_of_speeds`](Self::rates_of_speeds).",
         ],
     }),
-    Row::derived_row(Id::RateMatrix, "__rate_matrix", SPEEDS, |f| Declaration {
+    Row::derived_row(GeneratedId::RateMatrix, "__rate_matrix", SPEEDS, |f| Declaration {
         arguments: vec![Q],
         timeless: true,
         shape: Shape::Square(f.nv),
         ..Declaration::default()
     })
-    .without_batch(),
-    Row::derived_row(Id::SpeedMatrix, "__speed_matrix", SPEEDS, |f| Declaration {
+    .without_batched_variant(),
+    Row::derived_row(GeneratedId::SpeedMatrix, "__speed_matrix", SPEEDS, |f| Declaration {
         arguments: vec![Q],
         timeless: true,
         shape: Shape::Square(f.nv),
         ..Declaration::default()
     })
-    .without_batch(),
-    Row::derived_row(Id::RateChanges, "__rate_changes", SPEEDS, |f| Declaration {
+    .without_batched_variant(),
+    Row::derived_row(GeneratedId::RateChanges, "__rate_changes", SPEEDS, |f| Declaration {
         arguments: vec![Q, V],
         timeless: true,
         shape: Shape::Square(f.nv),
         ..Declaration::default()
     })
-    .without_batch(),
-    Row::derived_row(Id::RateAccelerations, "__rate_accelerations", SPEEDS, |f| Declaration {
+    .without_batched_variant(),
+    Row::derived_row(GeneratedId::RateAccelerations, "__rate_accelerations", SPEEDS, |f| Declaration {
         arguments: vec![Q, V, A],
         timeless: true,
         shape: Shape::Vector(f.nv),
         ..Declaration::default()
     })
-    .without_batch(),
+    .without_batched_variant(),
 ];
 
 /// Rows of the functions of the option `derivatives` for mechanisms with generalized speeds.
 pub const DERIVATIVES: &[Row] = &[Row::derived_row(
-    Id::Turning,
+    GeneratedId::Turning,
     "__turning",
     &[FunctionNeed::Inertia, FunctionNeed::Asks(RequestOption::Derivatives), FunctionNeed::Speeds],
     |f| Declaration {
@@ -74,4 +74,4 @@ pub const DERIVATIVES: &[Row] = &[Row::derived_row(
         ..Declaration::default()
     },
 )
-.without_batch()];
+.without_batched_variant()];

@@ -55,11 +55,11 @@ fn zeros_on_paths(blocks: &[LinkBlock], program: &Program, nv: usize) -> [Vec<(u
             let rows: Vec<usize> =
                 path.flat_map(|k| blocks[k].first..blocks[k].first + blocks[k].count).collect();
             for column in block.first..block.first + block.count {
-                let is_zero = |row: &&usize| {
+                let is_zero_entry = |row: &&usize| {
                     let output = program.outputs.get(matrix * nv * nv + column * nv + **row);
                     output == Some(&Operand::Const(0.0))
                 };
-                zeros.extend(rows.iter().filter(is_zero).map(|row| (column, *row)));
+                zeros.extend(rows.iter().filter(is_zero_entry).map(|row| (column, *row)));
             }
         }
         zeros

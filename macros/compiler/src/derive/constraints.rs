@@ -18,8 +18,8 @@ pub(super) fn constraint_jacobian<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
 
 /// Returns the derivatives of the contact velocities with respect to the velocities: a row for each contact
 /// velocity.
-pub(super) fn contact_rows<'g>(model: &Model<'g>) -> Vec<Vec<Expr<'g>>> {
-    constraints::jacobian_of(model, &model.contact_rates())
+pub(super) fn contact_jacobian_rows<'g>(model: &Model<'g>) -> Vec<Vec<Expr<'g>>> {
+    constraints::jacobian_of_rates(model, &model.contact_rates())
 }
 
 /// Returns the gap functions of the contacts.
@@ -79,7 +79,7 @@ impl<'g> ContactDerivatives<'g> {
     pub(super) fn new(model: &Model<'g>) -> ContactDerivatives<'g> {
         let rates = model.contact_rates();
         let accelerations = time_derivatives_along_motion(model.configuration_space(), &rates, true);
-        let accelerations = symbolic::force_derivatives(model, &accelerations);
+        let accelerations = symbolic::configuration_and_velocity_derivatives(model, &accelerations);
         let of_rates = symbolic::configuration_derivatives(model, &rates);
         ContactDerivatives { by_motion: [accelerations.by_q, accelerations.by_v, of_rates], rates }
     }
@@ -114,7 +114,7 @@ impl<'g> ContactDerivatives<'g> {
         let forces = contacts.sum_limb_matrices(&of_limbs)?;
         let mut outputs = matrix_by_columns(model, &forces);
         for rows in &self.by_motion {
-            outputs.extend(matrix_by_columns(model, &contacts.merge_rows(rows)?));
+            outputs.extend(matrix_by_columns(model, &contacts.merge_jacobian_rows_into_lanes(rows)?));
         }
         Some(outputs)
     }

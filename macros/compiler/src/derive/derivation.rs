@@ -1,14 +1,14 @@
 //! Derivation of programs from the functions of the catalogue: the equations of each function, selected by
 //! its id.
 
-use super::derivatives::Derivatives;
-use super::dynamics::Dynamics;
+use super::derivatives::DerivativeFunctions;
+use super::dynamics::DynamicsDerivation;
 use super::output::{BlockLoopDerivatives, Function};
 use super::regressor::IdentificationFunctions;
 use super::sensitivities::SensitivityDerivation;
 use super::specialisation::ParameterSpecialisation;
 use super::{OptionalFunctionData, constraints, outputs};
-use crate::catalogue::{DeclaredFunction, Facts, Id, Structure};
+use crate::catalogue::{DeclaredFunction, Facts, GeneratedId, MatrixStructure};
 use crate::expr::{Expr, Graph};
 use crate::kinematics::Joint;
 use crate::lower::{Program, pipeline};
@@ -36,8 +36,8 @@ pub(super) struct Derivation<'a, 'g> {
     /// Data of the optional functions; `None` while only the functions without an option are derived.
     extras: Option<&'a OptionalFunctionData<'a, 'g>>,
     /// Data of the option `derivatives`; `None` without the option.
-    derivatives: Option<&'a Derivatives<'a, 'g>>,
-    dynamics: OnceCell<Dynamics<'g>>,
+    derivatives: Option<&'a DerivativeFunctions<'a, 'g>>,
+    dynamics: OnceCell<DynamicsDerivation<'g>>,
     sensitivities: OnceCell<SensitivityDerivation<'g>>,
 }
 
@@ -71,7 +71,7 @@ impl<'a, 'g> Derivation<'a, 'g> {
         self,
         facts: &'b Facts,
         extras: &'b OptionalFunctionData<'b, 'g>,
-        derivatives: Option<&'b Derivatives<'b, 'g>>,
+        derivatives: Option<&'b DerivativeFunctions<'b, 'g>>,
     ) -> Derivation<'b, 'g>
     where
         'a: 'b,
@@ -105,16 +105,17 @@ impl<'a, 'g> Derivation<'a, 'g> {
         program: &Program,
     ) -> Option<Box<BlockLoopDerivatives>> {
         match declared.id {
-            Id::InverseDynamicsDerivatives | Id::InverseDynamicsDerivativesInto => {
-                self.derivatives?.block_loops(program).map(Box::new)
+            GeneratedId::InverseDynamicsDerivatives | GeneratedId::InverseDynamicsDerivativesInto => {
+                self.derivatives?.cheaper_inverse_dynamics_block_loops(program).map(Box::new)
             }
             _ => None,
         }
     }
 
-    fn derived_dynamics(&self) -> &Dynamics<'g> {
+    fn derived_dynamics(&self) -> &DynamicsDerivation<'g> {
         let native = self.speeds.map_or(self.model, |speeds| &speeds.native);
-        self.dynamics.get_or_init(|| Dynamics::new(native, self.passes, self.specialisation, self.speeds))
+        self.dynamics
+            .get_or_init(|| DynamicsDerivation::new(native, self.passes, self.specialisation, self.speeds))
     }
 
     fn derived_sensitivities(&self) -> &SensitivityDerivation<'g> {
@@ -125,57 +126,61 @@ impl<'a, 'g> Derivation<'a, 'g> {
     /// Returns a function of the option `derivatives`, whose data exist if such a function is declared.
     fn derivative_program(
         &self,
-        function: impl FnOnce(&Derivatives<'a, 'g>) -> Program,
-    ) -> (Program, Structure) {
-        self.derivative_assembled_at_run_time(|derivatives| (function(derivatives), Structure::default()))
+        function: impl FnOnce(&DerivativeFunctions<'a, 'g>) -> Program,
+    ) -> (Program, MatrixStructure) {
+        self.derivative_assembled_at_run_time(|derivatives| {
+            (function(derivatives), MatrixStructure::default())
+        })
     }
 
     /// Returns a function of the option `derivatives` whose results the runtime assembles.
     fn derivative_assembled_at_run_time(
         &self,
-        function: impl FnOnce(&Derivatives<'a, 'g>) -> (Program, Structure),
-    ) -> (Program, Structure) {
+        function: impl FnOnce(&DerivativeFunctions<'a, 'g>) -> (Program, MatrixStructure),
+    ) -> (Program, MatrixStructure) {
         self.derivatives.map(function).unwrap_or_default()
     }
 
     fn contact_responses(&self) -> Program {
         let native = self.speeds.map_or(self.model, |speeds| &speeds.native);
-        self.derived_dynamics().contact_responses(&constraints::contact_rows(native))
+        self.derived_dynamics().contact_responses(&constraints::contact_jacobian_rows(native))
     }
 
     /// Returns the program of a contact function from its values, one for each contact velocity.
     fn contact_program(&self, values: &[Expr<'g>]) -> Program {
-        self.with_limb_contacts(self.specialisation.lower_to_program(values), |contacts| {
-            contacts.merge_contact_values(values)
+        self.with_limb_lane_variant(self.specialisation.lower_to_program(values), |contacts| {
+            contacts.merge_contact_values_into_lanes(values)
         })
     }
 
     fn contact_jacobian(&self) -> Program {
-        let rows = constraints::contact_rows(self.model);
+        let rows = constraints::contact_jacobian_rows(self.model);
         let plain = self.specialisation.lower_to_program(&constraints::matrix_by_columns(self.model, &rows));
-        self.with_limb_contacts(plain, |contacts| {
-            Some(constraints::matrix_by_columns(self.model, &contacts.merge_rows(&rows)?))
+        self.with_limb_lane_variant(plain, |contacts| {
+            Some(constraints::matrix_by_columns(self.model, &contacts.merge_jacobian_rows_into_lanes(&rows)?))
         })
     }
 
     fn contact_derivatives(&self) -> Program {
         let found = constraints::ContactDerivatives::new(self.model);
         let plain = self.specialisation.lower_to_program(&found.contact_derivative_outputs(self.model));
-        self.with_limb_contacts(plain, |contacts| found.contact_derivatives_in_lanes(self.model, contacts))
+        self.with_limb_lane_variant(plain, |contacts| {
+            found.contact_derivatives_in_lanes(self.model, contacts)
+        })
     }
 
     /// Returns the program of a contact function with the version in which identical limbs are SIMD lanes, if
     /// one exists.
-    fn with_limb_contacts(
+    fn with_limb_lane_variant(
         &self,
         plain: Program,
         outputs: impl FnOnce(&mut LimbContacts<'_, 'g>) -> Option<Vec<Expr<'g>>>,
     ) -> Program {
         match self.facts.kinematic {
             true => plain,
-            false => self.derived_dynamics().with_limb_contacts(
+            false => self.derived_dynamics().with_limb_lane_variant(
                 plain,
-                &constraints::contact_rows(self.model),
+                &constraints::contact_jacobian_rows(self.model),
                 outputs,
             ),
         }
@@ -216,13 +221,17 @@ impl<'a, 'g> Derivation<'a, 'g> {
     }
 
     /// Lowers the outputs of a function whose matrices have no structure to exploit.
-    fn lower_unstructured(&self, outputs: &[Expr<'g>]) -> (Program, Structure) {
+    fn lower_unstructured(&self, outputs: &[Expr<'g>]) -> (Program, MatrixStructure) {
         unstructured_program(self.specialisation.lower_to_program(outputs))
     }
 
     /// Returns the program of a declared function, with the structure of its matrices. Functions that are
     /// `done` may be used.
-    fn program_of_function(&self, declared: &DeclaredFunction, done: &[Function]) -> (Program, Structure) {
+    fn program_of_function(
+        &self,
+        declared: &DeclaredFunction,
+        done: &[Function],
+    ) -> (Program, MatrixStructure) {
         match self.speeds.and_then(|speeds| self.outputs_in_speeds(speeds, declared)) {
             Some(outputs) => self.lower_unstructured(&outputs),
             None => self.program_in_joint_velocities(declared, done),
@@ -234,165 +243,201 @@ impl<'a, 'g> Derivation<'a, 'g> {
         &self,
         declared: &DeclaredFunction,
         done: &[Function],
-    ) -> (Program, Structure) {
+    ) -> (Program, MatrixStructure) {
         let (model, joints) = (self.model, self.joints);
-        let find_derived_function = |id: Id| done.iter().find(|f| f.id == id);
+        let find_derived_function = |id: GeneratedId| done.iter().find(|f| f.id == id);
         match declared.id {
-            Id::Neutral => {
+            GeneratedId::Neutral => {
                 self.lower_unstructured(&constant_expressions(model.graph, &model.neutral_configuration()))
             }
-            Id::InitialConfiguration => {
+            GeneratedId::InitialConfiguration => {
                 let configuration = model.initial_configuration.as_deref().unwrap_or_default();
                 self.lower_unstructured(&constant_expressions(model.graph, configuration))
             }
-            Id::Limits => self.lower_unstructured(&model.coordinate_limit_bounds()),
-            Id::Drawing => self.lower_unstructured(&model.drawing_numbers()),
-            Id::Heights => self.lower_unstructured(&model.heights),
-            Id::Figures => self.lower_unstructured(&model.requirement_values()),
-            Id::GeneralizedForces => self.lower_unstructured(&forces::generalized_forces(model, joints)),
-            Id::DissipatedPower => self.lower_unstructured(&[power::dissipated_power(model)]),
-            Id::ControlPower => self.lower_unstructured(&[power::control_power(model, joints)]),
-            Id::DisturbancePower => self.lower_unstructured(&[power::disturbance_power(model)]),
-            Id::TotalMass => self.lower_unstructured(&[energy::mass_and_moment(model, joints).0]),
-            Id::MassMatrix => unstructured_program(self.derived_dynamics().mass_matrix()),
-            Id::InverseDynamics => unstructured_program(self.derived_dynamics().inverse_dynamics()),
-            Id::BiasForces => unstructured_program(self.derived_dynamics().bias_forces()),
-            Id::ForwardDynamics => unstructured_program(self.derived_dynamics().forward_dynamics()),
-            Id::KineticEnergy => unstructured_program(self.derived_dynamics().kinetic_energy()),
-            Id::PotentialEnergy => unstructured_program(self.derived_dynamics().potential_energy()),
-            Id::GeneralizedMomentum => unstructured_program(self.derived_dynamics().generalized_momentum()),
-            Id::MomentumRate => unstructured_program(self.derived_dynamics().momentum_rate()),
-            Id::CenterOfMass => unstructured_program(self.derived_dynamics().center_of_mass()),
-            Id::Momentum => unstructured_program(self.derived_dynamics().momentum_program()),
-            Id::CentroidalMomentumMatrix => {
+            GeneratedId::Limits => self.lower_unstructured(&model.coordinate_limit_bounds()),
+            GeneratedId::Drawing => self.lower_unstructured(&model.drawing_numbers()),
+            GeneratedId::Heights => self.lower_unstructured(&model.heights),
+            GeneratedId::Figures => self.lower_unstructured(&model.requirement_values()),
+            GeneratedId::GeneralizedForces => {
+                self.lower_unstructured(&forces::generalized_forces_of_inputs(model, joints))
+            }
+            GeneratedId::DissipatedPower => self.lower_unstructured(&[power::dissipated_power(model)]),
+            GeneratedId::ControlPower => self.lower_unstructured(&[power::control_power(model, joints)]),
+            GeneratedId::DisturbancePower => self.lower_unstructured(&[power::disturbance_power(model)]),
+            GeneratedId::TotalMass => self.lower_unstructured(&[energy::mass_and_moment(model, joints).0]),
+            GeneratedId::MassMatrix => unstructured_program(self.derived_dynamics().mass_matrix()),
+            GeneratedId::InverseDynamics => unstructured_program(self.derived_dynamics().inverse_dynamics()),
+            GeneratedId::BiasForces => unstructured_program(self.derived_dynamics().bias_forces()),
+            GeneratedId::ForwardDynamics => unstructured_program(self.derived_dynamics().forward_dynamics()),
+            GeneratedId::KineticEnergy => unstructured_program(self.derived_dynamics().kinetic_energy()),
+            GeneratedId::PotentialEnergy => unstructured_program(self.derived_dynamics().potential_energy()),
+            GeneratedId::GeneralizedMomentum => {
+                unstructured_program(self.derived_dynamics().generalized_momentum())
+            }
+            GeneratedId::MomentumRate => unstructured_program(self.derived_dynamics().momentum_rate()),
+            GeneratedId::CenterOfMass => unstructured_program(self.derived_dynamics().center_of_mass()),
+            GeneratedId::Momentum => unstructured_program(self.derived_dynamics().centroidal_momentum()),
+            GeneratedId::CentroidalMomentumMatrix => {
                 unstructured_program(self.derived_dynamics().centroidal_momentum_matrix())
             }
-            Id::CentroidalMomentumBias => {
+            GeneratedId::CentroidalMomentumBias => {
                 unstructured_program(self.derived_dynamics().centroidal_momentum_bias())
             }
-            Id::Hamiltonian => self.lower_unstructured(&self.hamilton_outputs(|h| vec![h.hamiltonian])),
-            Id::CanonicalVelocity => self.lower_unstructured(&self.hamilton_outputs(|h| h.velocity.clone())),
-            Id::CanonicalMomentumRate => {
+            GeneratedId::Hamiltonian => {
+                self.lower_unstructured(&self.hamilton_outputs(|h| vec![h.hamiltonian]))
+            }
+            GeneratedId::CanonicalVelocity => {
+                self.lower_unstructured(&self.hamilton_outputs(|h| h.velocity.clone()))
+            }
+            GeneratedId::CanonicalMomentumRate => {
                 self.lower_unstructured(&self.hamilton_outputs(|h| h.momentum_rate.clone()))
             }
-            Id::Routhian => self.lower_unstructured(&self.routh_outputs(|r| vec![r.routhian])),
-            Id::CyclicVelocities => self.lower_unstructured(&self.routh_outputs(|r| r.velocity.clone())),
-            Id::ReducedAccelerations => {
+            GeneratedId::Routhian => self.lower_unstructured(&self.routh_outputs(|r| vec![r.routhian])),
+            GeneratedId::CyclicVelocities => {
+                self.lower_unstructured(&self.routh_outputs(|r| r.velocity.clone()))
+            }
+            GeneratedId::ReducedAccelerations => {
                 self.lower_unstructured(&self.routh_outputs(|r| r.acceleration.clone()))
             }
-            Id::Conserved => self.lower_unstructured(&self.conserved_quantities()),
-            Id::ConstraintResiduals => self.lower_unstructured(&constraints::residuals(model)),
-            Id::ConstraintRates => self.lower_unstructured(&constraints::constraint_velocities(model)),
-            Id::ConstraintJacobian => self.lower_unstructured(&constraints::constraint_jacobian(model)),
-            Id::ConstraintBias => self.lower_unstructured(&constraints::constraint_biases(model)),
-            Id::ContactGaps => self.lower_unstructured(&constraints::contact_gaps(model)),
-            Id::ContactRates => unstructured_program(self.contact_program(&model.contact_rates())),
-            Id::ContactJacobian => unstructured_program(self.contact_jacobian()),
-            Id::ContactBias => {
+            GeneratedId::Conserved => self.lower_unstructured(&self.conserved_quantities()),
+            GeneratedId::ConstraintResiduals => self.lower_unstructured(&constraints::residuals(model)),
+            GeneratedId::ConstraintRates => {
+                self.lower_unstructured(&constraints::constraint_velocities(model))
+            }
+            GeneratedId::ConstraintJacobian => {
+                self.lower_unstructured(&constraints::constraint_jacobian(model))
+            }
+            GeneratedId::ConstraintBias => self.lower_unstructured(&constraints::constraint_biases(model)),
+            GeneratedId::ContactGaps => self.lower_unstructured(&constraints::contact_gaps(model)),
+            GeneratedId::ContactRates => unstructured_program(self.contact_program(&model.contact_rates())),
+            GeneratedId::ContactJacobian => unstructured_program(self.contact_jacobian()),
+            GeneratedId::ContactBias => {
                 unstructured_program(self.contact_program(&constraints::contact_biases(model)))
             }
-            Id::PolytopePoses => self.lower_unstructured(&model.polytope_poses()),
-            Id::ContactLaws => self.lower_unstructured(&constraints::contact_coefficients(model)),
-            Id::ContactResponses => unstructured_program(self.contact_responses()),
-            Id::ContactDerivatives => unstructured_program(self.contact_derivatives()),
-            Id::ContactDerivativesByParameters => {
+            GeneratedId::PolytopePoses => self.lower_unstructured(&model.polytope_poses()),
+            GeneratedId::ContactLaws => self.lower_unstructured(&constraints::contact_coefficients(model)),
+            GeneratedId::ContactResponses => unstructured_program(self.contact_responses()),
+            GeneratedId::ContactDerivatives => unstructured_program(self.contact_derivatives()),
+            GeneratedId::ContactDerivativesByParameters => {
                 self.lower_unstructured(&constraints::contact_parameter_derivatives(model))
             }
-            Id::ConstrainedDynamics => unstructured_program(self.derived_dynamics().constrained_dynamics()),
-            Id::ConstraintResponse => unstructured_program(self.derived_dynamics().constraint_response()),
-            Id::SlippingResponse => unstructured_program(self.derived_dynamics().slipping_response()),
-            Id::Output
-            | Id::OutputJacobian
-            | Id::OutputDerivatives
-            | Id::OutputByParameters
-            | Id::Reaction
-            | Id::Touched => self.lower_unstructured(&outputs::output_function_expressions(model, declared)),
-            Id::MassMatrixInverse => self.derivative_assembled_at_run_time(Derivatives::mass_matrix_inverse),
-            Id::CoriolisMatrix => self.derivative_program(Derivatives::coriolis_matrix),
-            Id::InverseDynamicsDerivatives => {
-                self.derivative_program(Derivatives::inverse_dynamics_derivatives)
+            GeneratedId::ConstrainedDynamics => {
+                unstructured_program(self.derived_dynamics().constrained_dynamics())
             }
-            Id::GeneralizedMomentumDerivatives => self.derivative_program(Derivatives::momentum_derivatives),
-            Id::MomentumRateDerivatives => self.derivative_program(Derivatives::momentum_rate_derivatives),
-            Id::ForwardDynamicsDerivatives => self.derivative_assembled_at_run_time(|d| {
-                d.forward_dynamics_derivatives(find_derived_function(Id::InverseDynamicsDerivatives))
+            GeneratedId::ConstraintResponse => {
+                unstructured_program(self.derived_dynamics().constraint_response())
+            }
+            GeneratedId::SlippingResponse => {
+                unstructured_program(self.derived_dynamics().slipping_response())
+            }
+            GeneratedId::Output
+            | GeneratedId::OutputJacobian
+            | GeneratedId::OutputDerivatives
+            | GeneratedId::OutputByParameters
+            | GeneratedId::Reaction
+            | GeneratedId::Touched => {
+                self.lower_unstructured(&outputs::output_function_expressions(model, declared))
+            }
+            GeneratedId::MassMatrixInverse => {
+                self.derivative_assembled_at_run_time(DerivativeFunctions::mass_matrix_inverse)
+            }
+            GeneratedId::CoriolisMatrix => self.derivative_program(DerivativeFunctions::coriolis_matrix),
+            GeneratedId::InverseDynamicsDerivatives => {
+                self.derivative_program(DerivativeFunctions::inverse_dynamics_derivatives)
+            }
+            GeneratedId::GeneralizedMomentumDerivatives => {
+                self.derivative_program(DerivativeFunctions::momentum_derivatives)
+            }
+            GeneratedId::MomentumRateDerivatives => {
+                self.derivative_program(DerivativeFunctions::momentum_rate_derivatives)
+            }
+            GeneratedId::ForwardDynamicsDerivatives => self.derivative_assembled_at_run_time(|d| {
+                d.forward_dynamics_derivatives(find_derived_function(GeneratedId::InverseDynamicsDerivatives))
             }),
-            Id::Linearize => self.derivative_program(Derivatives::linearization_program),
-            Id::AccelerationsAndInverse => {
-                self.derivative_assembled_at_run_time(Derivatives::accelerations_and_inverse)
+            GeneratedId::Linearize => self.derivative_program(DerivativeFunctions::linearization_program),
+            GeneratedId::AccelerationsAndInverse => {
+                self.derivative_assembled_at_run_time(DerivativeFunctions::accelerations_and_inverse)
             }
-            Id::MotionDerivatives => self.derivative_program(Derivatives::motion_derivatives),
-            Id::InputDerivatives => self.derivative_program(Derivatives::input_derivatives),
-            Id::InverseDynamicsDerivativesInto => {
-                program_of_function(find_derived_function(Id::InverseDynamicsDerivatives))
+            GeneratedId::MotionDerivatives => {
+                self.derivative_program(DerivativeFunctions::constrained_motion_derivative_terms)
             }
-            Id::ForwardDynamicsDerivativesInto => {
-                program_of_function(find_derived_function(Id::ForwardDynamicsDerivatives))
+            GeneratedId::InputDerivatives => self.derivative_program(DerivativeFunctions::input_derivatives),
+            GeneratedId::InverseDynamicsDerivativesInto => {
+                copied_program_or_empty(find_derived_function(GeneratedId::InverseDynamicsDerivatives))
             }
-            Id::InverseDynamicsSecondDerivatives => {
-                self.derivative_program(Derivatives::inverse_dynamics_second_derivatives)
+            GeneratedId::ForwardDynamicsDerivativesInto => {
+                copied_program_or_empty(find_derived_function(GeneratedId::ForwardDynamicsDerivatives))
             }
-            Id::GeneralizedForcesSecondDerivatives => {
-                self.derivative_program(Derivatives::generalized_forces_second_derivatives)
+            GeneratedId::InverseDynamicsSecondDerivatives => {
+                self.derivative_program(DerivativeFunctions::inverse_dynamics_second_derivatives)
             }
-            Id::ConstraintCurvature => self.derivative_program(Derivatives::constraint_curvature),
-            Id::JointTorqueRegressor => {
+            GeneratedId::GeneralizedForcesSecondDerivatives => {
+                self.derivative_program(DerivativeFunctions::generalized_forces_second_derivatives)
+            }
+            GeneratedId::ConstraintCurvature => {
+                self.derivative_program(DerivativeFunctions::constraint_curvature)
+            }
+            GeneratedId::JointTorqueRegressor => {
                 self.lower_unstructured(&self.regressor_outputs(|i| i.joint_torque_regressor(joints)))
             }
-            Id::StandardParameters => {
+            GeneratedId::StandardParameters => {
                 self.lower_unstructured(&self.regressor_outputs(IdentificationFunctions::standard_parameters))
             }
-            Id::BaseRegressor => {
+            GeneratedId::BaseRegressor => {
                 self.lower_unstructured(&self.regressor_outputs(IdentificationFunctions::base_regressor))
             }
-            Id::BaseParameters => {
+            GeneratedId::BaseParameters => {
                 self.lower_unstructured(&self.regressor_outputs(IdentificationFunctions::base_parameters))
             }
-            Id::InverseDynamicsByParameters => {
-                unstructured_program(self.derived_sensitivities().inverse_dynamics())
+            GeneratedId::InverseDynamicsByParameters => {
+                unstructured_program(self.derived_sensitivities().inverse_dynamics_sensitivities())
             }
-            Id::ForwardDynamicsByParameters => {
-                unstructured_program(self.derived_sensitivities().forward_dynamics())
+            GeneratedId::ForwardDynamicsByParameters => {
+                unstructured_program(self.derived_sensitivities().forward_dynamics_sensitivities())
             }
-            Id::GeneralizedForcesByParameters => {
-                self.lower_unstructured(&parameters::generalized_forces(model, joints).concat())
+            GeneratedId::GeneralizedForcesByParameters => {
+                self.lower_unstructured(&parameters::generalized_forces_of_inputs(model, joints).concat())
             }
-            Id::MassMatrixPacked | Id::MassMatrixInto => self.packed_mass_matrix(declared.id),
-            Id::PassiveForces => self.lower_unstructured(&self.passive_outputs(|p| p.forces.clone())),
-            Id::PassiveDerivatives => {
+            GeneratedId::MassMatrixPacked | GeneratedId::MassMatrixInto => {
+                self.packed_mass_matrix(declared.id)
+            }
+            GeneratedId::PassiveForces => {
+                self.lower_unstructured(&self.passive_outputs(|p| p.forces.clone()))
+            }
+            GeneratedId::PassiveDerivatives => {
                 self.lower_unstructured(&self.passive_outputs(|p| p.derivatives.clone()))
             }
             // Functions of mechanisms with speeds alone, which `outputs_in_speeds` has already handled.
-            Id::RatesOfSpeeds
-            | Id::SpeedsOfRates
-            | Id::RateMatrix
-            | Id::SpeedMatrix
-            | Id::RateChanges
-            | Id::RateAccelerations
-            | Id::Turning
-            | Id::Part => unstructured_program(Program::default()),
+            GeneratedId::RatesOfSpeeds
+            | GeneratedId::SpeedsOfRates
+            | GeneratedId::RateMatrix
+            | GeneratedId::SpeedMatrix
+            | GeneratedId::RateChanges
+            | GeneratedId::RateAccelerations
+            | GeneratedId::Turning
+            | GeneratedId::Part => unstructured_program(Program::default()),
         }
     }
 
     /// Returns the program of the entries of the mass matrix that are not identically zero.
-    fn packed_mass_matrix(&self, id: Id) -> (Program, Structure) {
+    fn packed_mass_matrix(&self, id: GeneratedId) -> (Program, MatrixStructure) {
         let entries = &self.facts.entries;
         let at: Vec<usize> = entries.iter().map(|(i, j)| j * self.model.nv() + i).collect();
-        let entries = if id == Id::MassMatrixInto { entries.clone() } else { Vec::new() };
+        let entries = if id == GeneratedId::MassMatrixInto { entries.clone() } else { Vec::new() };
         (
             self.derived_dynamics().mass_matrix().with_selected_outputs(&at),
-            Structure { entries, ..Structure::default() },
+            MatrixStructure { entries, ..MatrixStructure::default() },
         )
     }
 }
 
 /// Returns a program whose matrices have no structure to exploit.
-fn unstructured_program(program: Program) -> (Program, Structure) {
-    (program, Structure::default())
+fn unstructured_program(program: Program) -> (Program, MatrixStructure) {
+    (program, MatrixStructure::default())
 }
 
 /// Returns a copy of the program of another function; an empty program if that function does not exist.
-fn program_of_function(other: Option<&Function>) -> (Program, Structure) {
+fn copied_program_or_empty(other: Option<&Function>) -> (Program, MatrixStructure) {
     other.map(|f| (f.program.clone(), f.structure.clone())).unwrap_or_default()
 }
 

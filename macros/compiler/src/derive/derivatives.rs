@@ -4,7 +4,7 @@ use super::output::{BlockLoopDerivatives, Function};
 use super::second;
 use super::specialisation::ParameterSpecialisation;
 use super::{block_loops, limb_lanes};
-use crate::catalogue::{InverseForm, Structure};
+use crate::catalogue::{InverseForm, MatrixStructure};
 use crate::expr::Expr;
 use crate::kinematics::{self, Joint};
 use crate::lower::{Operand, Program, lower};
@@ -12,8 +12,8 @@ use crate::machine::{
     BLOCKED_VELOCITIES, DERIVATIVES_COMPARED, DERIVATIVES_WRITTEN_OUT, INVERSE_WRITTEN_OUT,
 };
 use crate::mechanics::derivatives::{
-    self, DerivationMethod, Factor, ForceDerivatives, Inverse, LinearizedEquations, Trunk, analytic,
-    invariance, inverse_terms_for_runtime_loops, symbolic,
+    self, BlockInverseMassMatrix, DerivationMethod, ForceDerivatives, LinearizedEquations,
+    MatrixFactorisation, TrunkLimbPartition, analytic, invariance, inverse_terms_for_runtime_loops, symbolic,
 };
 use crate::mechanics::passive::passive_forces;
 use crate::mechanics::speeds::displacement_commutators;
@@ -43,7 +43,7 @@ pub(super) fn model_variants<'g>(model: &Model<'g>, passes: Passes) -> Vec<Varia
 
 /// The derivative functions, derived from the variant of the model in which inverse dynamics derivatives cost
 /// least.
-pub(super) struct Derivatives<'a, 'g> {
+pub(super) struct DerivativeFunctions<'a, 'g> {
     parts: DerivativeVariant<'a, 'g>,
     /// Generalized forces of the inputs, `τ(q, u)`.
     tau: Vec<Expr<'g>>,
@@ -51,13 +51,13 @@ pub(super) struct Derivatives<'a, 'g> {
     constrained: bool,
 }
 
-impl<'a, 'g> Derivatives<'a, 'g> {
+impl<'a, 'g> DerivativeFunctions<'a, 'g> {
     pub(super) fn new(
         model: &Model<'g>,
         variants: &'a [Variant<'g>],
         passes: Passes,
         specialisation: ParameterSpecialisation,
-    ) -> Option<Derivatives<'a, 'g>> {
+    ) -> Option<DerivativeFunctions<'a, 'g>> {
         let mut parts: Vec<DerivativeVariant<'_, '_>> =
             variants.iter().map(|variant| DerivativeVariant::new(variant, specialisation)).collect();
         if model.nv() <= DIFFERENTIATE {
@@ -66,7 +66,8 @@ impl<'a, 'g> Derivatives<'a, 'g> {
                 ..DerivativeVariant::new(variant, specialisation)
             }));
         }
-        let mut parts = parts.into_iter().min_by_key(DerivativeVariant::operation_count_of_force_columns)?;
+        let mut parts =
+            parts.into_iter().min_by_key(DerivativeVariant::operation_count_of_force_derivatives)?;
         if parts.model.acceleration_forces.is_empty() {
             parts.known = invariance::columns_determined_by_invariance(parts.model, &parts.joints);
         }
@@ -74,12 +75,12 @@ impl<'a, 'g> Derivatives<'a, 'g> {
             parts.wide = passes.tried_lane_counts(model.nv());
             parts.find_limbs_and_trunk(passes.lanes && specialisation == ParameterSpecialisation::None);
         }
-        let tau = forces::generalized_forces(model, &kinematics::joints_of_model(model));
-        Some(Derivatives { parts, tau, constrained: !model.constraints.is_empty() })
+        let tau = forces::generalized_forces_of_inputs(model, &kinematics::joints_of_model(model));
+        Some(DerivativeFunctions { parts, tau, constrained: !model.constraints.is_empty() })
     }
 
     /// Returns true if the generated derivatives of forward dynamics call other functions.
-    pub(super) fn forward_derivatives_call_functions(&self) -> bool {
+    pub(super) fn forward_dynamics_derivatives_call_functions(&self) -> bool {
         !self.constrained && self.parts.exceeds_single_function()
     }
 
@@ -88,11 +89,11 @@ impl<'a, 'g> Derivatives<'a, 'g> {
         self.parts.model.nv() > DERIVATIVES_COMPARED && self.parts.model.acceleration_forces.is_empty()
     }
 
-    pub(super) fn mass_matrix_inverse(&self) -> (Program, Structure) {
+    pub(super) fn mass_matrix_inverse(&self) -> (Program, MatrixStructure) {
         self.parts.inverse_mass_matrix_program(false)
     }
 
-    pub(super) fn accelerations_and_inverse(&self) -> (Program, Structure) {
+    pub(super) fn accelerations_and_inverse(&self) -> (Program, MatrixStructure) {
         self.parts.inverse_mass_matrix_program(true)
     }
 
@@ -101,12 +102,15 @@ impl<'a, 'g> Derivatives<'a, 'g> {
     }
 
     pub(super) fn inverse_dynamics_derivatives(&self) -> Program {
-        self.parts.inverse_dynamics()
+        self.parts.inverse_dynamics_derivatives_program()
     }
 
     /// Returns the form of the derivatives of inverse dynamics with loops over blocks of links, if it costs
     /// less than their `program`.
-    pub(super) fn block_loops(&self, program: &Program) -> Option<BlockLoopDerivatives> {
+    pub(super) fn cheaper_inverse_dynamics_block_loops(
+        &self,
+        program: &Program,
+    ) -> Option<BlockLoopDerivatives> {
         let DerivativeVariant { model, joints, specialisation, .. } = &self.parts;
         let supported = *specialisation == ParameterSpecialisation::None
             && model.nv() >= BLOCKED_VELOCITIES
@@ -122,24 +126,29 @@ impl<'a, 'g> Derivatives<'a, 'g> {
 
     pub(super) fn momentum_rate_derivatives(&self) -> Program {
         let DerivativeVariant { model, joints, specialisation, .. } = &self.parts;
-        let rate = momentum::momentum_rate(model, joints, &mechanics::velocity_symbols(model));
-        specialisation.lower_to_program(&force_derivative_entries(&symbolic::force_derivatives(model, &rate)))
+        let rate = momentum::momentum_rate_without_inputs(model, joints, &mechanics::velocity_symbols(model));
+        specialisation.lower_to_program(&force_derivative_entries(
+            &symbolic::configuration_and_velocity_derivatives(model, &rate),
+        ))
     }
 
     /// Returns the derivatives of forward dynamics. `forces` are the derivatives of inverse dynamics, which
     /// determine the entries that are always zero.
-    pub(super) fn forward_dynamics_derivatives(&self, forces: Option<&Function>) -> (Program, Structure) {
+    pub(super) fn forward_dynamics_derivatives(
+        &self,
+        forces: Option<&Function>,
+    ) -> (Program, MatrixStructure) {
         let parts = &self.parts;
         let is_zero_constant = |o: &Operand| *o == Operand::Const(0.0);
         let zeros =
             forces.map_or_else(Vec::new, |f| f.program.outputs.iter().map(is_zero_constant).collect());
         let (inverse, known) = (parts.form_of_inverse(), parts.known.invariant_column_indices());
-        let program = match (self.forward_derivatives_call_functions(), &parts.trunk) {
+        let program = match (self.forward_dynamics_derivatives_call_functions(), &parts.trunk) {
             (true, _) => parts.specialisation.lower_to_program(&parts.known.all_invariant_columns()),
-            (false, Some(trunk)) => parts.forward_derivatives_by_blocks(trunk),
-            (false, None) => parts.forward_dynamics(),
+            (false, Some(trunk)) => parts.forward_dynamics_derivatives_by_blocks(trunk),
+            (false, None) => parts.forward_dynamics_derivatives_program(),
         };
-        (program, Structure { inverse, zeros, known, ..Structure::default() })
+        (program, MatrixStructure { inverse, zeros, known, ..MatrixStructure::default() })
     }
 
     pub(super) fn linearization_program(&self) -> Program {
@@ -151,7 +160,12 @@ impl<'a, 'g> Derivatives<'a, 'g> {
 
     pub(super) fn inverse_dynamics_second_derivatives(&self) -> Program {
         let parts = &self.parts;
-        second::inverse_dynamics(parts.model, &parts.joints, parts.wide, parts.specialisation)
+        second::inverse_dynamics_second_derivatives(
+            parts.model,
+            &parts.joints,
+            parts.wide,
+            parts.specialisation,
+        )
     }
 
     pub(super) fn generalized_forces_second_derivatives(&self) -> Program {
@@ -162,7 +176,7 @@ impl<'a, 'g> Derivatives<'a, 'g> {
         second::constraint_hessian(self.parts.model, self.parts.specialisation)
     }
 
-    pub(super) fn motion_derivatives(&self) -> Program {
+    pub(super) fn constrained_motion_derivative_terms(&self) -> Program {
         self.parts.constrained_motion_derivative_terms()
     }
 
@@ -182,7 +196,7 @@ struct DerivativeVariant<'a, 'g> {
     method: DerivationMethod,
     specialisation: ParameterSpecialisation,
     /// Trunk of a large mechanism, if its tree branches.
-    trunk: Option<Trunk>,
+    trunk: Option<TrunkLimbPartition>,
     /// Variant of the mechanism with identical limbs in SIMD lanes.
     limbs: Option<MechanismInLanes<'g>>,
     /// Numbers of SIMD lanes that are tried for the recursion towards the root, in addition to scalar code.
@@ -195,7 +209,7 @@ struct DerivativeVariant<'a, 'g> {
 struct MechanismInLanes<'g> {
     limbs: VectorisedMechanism<'g>,
     mass: crba::Matrix<'g>,
-    trunk: Option<Trunk>,
+    trunk: Option<TrunkLimbPartition>,
 }
 
 impl<'a, 'g> DerivativeVariant<'a, 'g> {
@@ -220,23 +234,25 @@ impl<'a, 'g> DerivativeVariant<'a, 'g> {
         let groups = if lanes { vectorise::find_limb_groups(self.model, &self.joints) } else { Vec::new() };
         let limbs =
             VectorisedMechanism::new(self.model, &self.joints, &groups, || passive_forces(self.model, true));
-        let marked =
-            limbs.as_ref().map(|limbs| Trunk::branching_descendant_flags(&limbs.joints, limbs.model.nv()));
+        let marked = limbs
+            .as_ref()
+            .map(|limbs| TrunkLimbPartition::branching_descendant_flags(&limbs.joints, limbs.model.nv()));
         if self.model.nv() > DERIVATIVES_COMPARED {
             let whole = match (&limbs, &marked) {
                 (Some(limbs), Some(marked)) => limbs.marked_velocities_outside_limbs(marked),
-                _ => Trunk::branching_descendant_flags(&self.joints, self.model.nv()),
+                _ => TrunkLimbPartition::branching_descendant_flags(&self.joints, self.model.nv()),
             };
-            self.trunk = Trunk::new(&self.joints, &self.mass, &whole);
+            self.trunk = TrunkLimbPartition::new(&self.joints, &self.mass, &whole);
         }
         self.limbs = limbs.zip(marked).map(|(limbs, marked)| {
             let mass = crba::mass_matrix(&limbs.model, &limbs.joints);
-            let trunk = self.trunk.as_ref().and_then(|_| Trunk::new(&limbs.joints, &mass, &marked));
+            let trunk =
+                self.trunk.as_ref().and_then(|_| TrunkLimbPartition::new(&limbs.joints, &mass, &marked));
             MechanismInLanes { limbs, mass, trunk }
         });
     }
 
-    fn operation_count_of_force_columns(&self) -> usize {
+    fn operation_count_of_force_derivatives(&self) -> usize {
         self.specialisation
             .lower_to_program(&self.force_derivative_entries(self.method))
             .counts
@@ -248,14 +264,14 @@ impl<'a, 'g> DerivativeVariant<'a, 'g> {
         force_derivative_entries(&derivatives::inverse_dynamics(self.model, &self.joints, &a, method))
     }
 
-    fn inverse_dynamics(&self) -> Program {
+    fn inverse_dynamics_derivatives_program(&self) -> Program {
         let program = self.specialisation.lower_to_program(&self.force_derivative_entries(self.method));
         let wide = self.wide.iter().map(|most| {
             self.specialisation
                 .lower_to_program(&self.force_derivative_entries(DerivationMethod::Recursion(*most)))
         });
         let in_lanes = self.limbs.iter().flat_map(|lanes| {
-            let a = lanes.limbs.symbols_of_quantity(Quantity::Acceleration);
+            let a = lanes.limbs.lane_symbols_per_velocity(Quantity::Acceleration);
             [1].iter().chain(self.wide).map(move |most| {
                 let forces = limb_lanes::inverse_dynamics_derivatives(&lanes.limbs, self.model, &a, *most);
                 lower(&force_derivative_entries(&forces))
@@ -264,13 +280,14 @@ impl<'a, 'g> DerivativeVariant<'a, 'g> {
         program.with_cheapest_lane_variant(wide.chain(in_lanes))
     }
 
-    fn forward_dynamics(&self) -> Program {
+    fn forward_dynamics_derivatives_program(&self) -> Program {
         let tau = mechanics::generalized_force_symbols(self.model);
         let derivative_program_from_mass_matrix = |mass: &crba::Matrix<'g>, method: DerivationMethod| {
-            let mut found = derivatives::forward_dynamics(self.model, &self.joints, mass, &tau, method);
+            let mut found =
+                derivatives::linearize_forward_dynamics(self.model, &self.joints, mass, &tau, method);
             self.known.replace_known_columns(&mut found.forces);
             self.specialisation
-                .lower_to_program(&[linearization_columns(&found), found.accelerations].concat())
+                .lower_to_program(&[linearization_entries_by_column(&found), found.accelerations].concat())
         };
         let wide = self.wide.iter().map(|most| {
             let mass = crba::mass_matrix_in_lanes(self.model, &self.joints, *most);
@@ -280,9 +297,9 @@ impl<'a, 'g> DerivativeVariant<'a, 'g> {
     }
 
     /// Returns the derivatives of forward dynamics with `M⁻¹` by the blocks of trunk and limbs.
-    fn forward_derivatives_by_blocks(&self, trunk: &Trunk) -> Program {
+    fn forward_dynamics_derivatives_by_blocks(&self, trunk: &TrunkLimbPartition) -> Program {
         let model = self.model;
-        let inverse = Inverse::new(&self.mass, trunk);
+        let inverse = BlockInverseMassMatrix::new(&self.mass, trunk);
         let a = inverse.solve_by_trunk_and_limbs(&self.unbalanced_forces());
         let forces = derivatives::inverse_dynamics(model, &self.joints, &a, self.method);
         let concatenated_derivative_outputs =
@@ -298,9 +315,9 @@ impl<'a, 'g> DerivativeVariant<'a, 'g> {
             a,
         ));
         let in_lanes = self.limbs.as_ref().and_then(|lanes| {
-            let inverse = Inverse::new(&lanes.mass, lanes.trunk.as_ref()?);
+            let inverse = BlockInverseMassMatrix::new(&lanes.mass, lanes.trunk.as_ref()?);
             let a = limb_lanes::accelerations_in_lanes(&lanes.limbs, &inverse);
-            let parts = limb_lanes::inverse(
+            let parts = limb_lanes::scatter_inverse_to_whole_mechanism(
                 &lanes.limbs,
                 &[inverse.trunk_and_limb_inverse_columns(), inverse.limb_to_trunk_factors()],
             );
@@ -317,30 +334,30 @@ impl<'a, 'g> DerivativeVariant<'a, 'g> {
     }
 
     /// Returns the program of `M⁻¹`, by blocks if there is a trunk; after the accelerations if `accelerated`.
-    fn inverse(&self, accelerated: bool) -> Program {
+    fn straight_line_mass_inverse_program(&self, accelerated: bool) -> Program {
         let inverse_matrix_outputs = |a: Option<Vec<Expr<'g>>>, [inverse, factors]: [crba::Matrix<'g>; 2]| {
             [a.unwrap_or_default(), entries_by_column(&inverse), factors.concat()].concat()
         };
         let Some(trunk) = &self.trunk else {
             let mass = if accelerated { &self.effective } else { &self.mass };
-            let factor = Factor::new(mass, &self.joints);
+            let factor = MatrixFactorisation::new(mass, &self.joints);
             let a = accelerated.then(|| factor.solve_factored(self.unbalanced_forces()));
             return self
                 .specialisation
                 .lower_to_program(&inverse_matrix_outputs(a, [factor.inverse(), Vec::new()]));
         };
-        let inverse = Inverse::new(&self.mass, trunk);
+        let inverse = BlockInverseMassMatrix::new(&self.mass, trunk);
         let a = accelerated.then(|| inverse.solve_by_trunk_and_limbs(&self.unbalanced_forces()));
         let program = self.specialisation.lower_to_program(&inverse_matrix_outputs(
             a,
             [inverse.trunk_and_limb_inverse_columns(), inverse.limb_to_trunk_factors()],
         ));
         program.with_cheapest_lane_variant(self.limbs.iter().filter_map(|lanes| {
-            let inverse = Inverse::new(&lanes.mass, lanes.trunk.as_ref()?);
+            let inverse = BlockInverseMassMatrix::new(&lanes.mass, lanes.trunk.as_ref()?);
             let a = accelerated.then(|| {
                 lanes.limbs.scatter_to_velocities(&limb_lanes::accelerations_in_lanes(&lanes.limbs, &inverse))
             });
-            let parts = limb_lanes::inverse(
+            let parts = limb_lanes::scatter_inverse_to_whole_mechanism(
                 &lanes.limbs,
                 &[inverse.trunk_and_limb_inverse_columns(), inverse.limb_to_trunk_factors()],
             );
@@ -357,7 +374,7 @@ impl<'a, 'g> DerivativeVariant<'a, 'g> {
             };
         let r = accelerated.then(|| self.unbalanced_forces());
         let trunk = self.trunk_or_whole_mechanism();
-        let derivative_program_from_mass_matrix = |mass: &crba::Matrix<'g>| {
+        let inverse_terms_program_from_mass = |mass: &crba::Matrix<'g>| {
             let outputs = bordered_inverse_outputs(r.clone(), inverse_terms_for_runtime_loops(mass, &trunk));
             self.specialisation.lower_to_program(&outputs)
         };
@@ -365,15 +382,18 @@ impl<'a, 'g> DerivativeVariant<'a, 'g> {
         // 2270. For a humanoid they made no difference.
         let tried = if self.trunk.is_none() { self.wide } else { &[] };
         let wide = tried.iter().map(|most| {
-            derivative_program_from_mass_matrix(&crba::mass_matrix_in_lanes(self.model, &self.joints, *most))
+            inverse_terms_program_from_mass(&crba::mass_matrix_in_lanes(self.model, &self.joints, *most))
         });
         let in_lanes = self.limbs.iter().filter_map(|lanes| {
             let parts = inverse_terms_for_runtime_loops(&lanes.mass, lanes.trunk.as_ref()?);
             let r = accelerated
                 .then(|| lanes.limbs.scatter_to_velocities(&limb_lanes::unbalanced_forces(&lanes.limbs)));
-            Some(lower(&bordered_inverse_outputs(r, limb_lanes::inverse(&lanes.limbs, &parts))))
+            Some(lower(&bordered_inverse_outputs(
+                r,
+                limb_lanes::scatter_inverse_to_whole_mechanism(&lanes.limbs, &parts),
+            )))
         });
-        derivative_program_from_mass_matrix(&self.mass).with_cheapest_lane_variant(wide.chain(in_lanes))
+        inverse_terms_program_from_mass(&self.mass).with_cheapest_lane_variant(wide.chain(in_lanes))
     }
 
     /// Returns true if runtime loops compute `M⁻¹` instead of straight-line code. With identical limbs in
@@ -389,8 +409,10 @@ impl<'a, 'g> DerivativeVariant<'a, 'g> {
     }
 
     /// Returns the trunk, or a trunk of all velocities for a mechanism that does not branch.
-    fn trunk_or_whole_mechanism(&self) -> Trunk {
-        self.trunk.clone().unwrap_or_else(|| Trunk::trunk_of_all_velocities(&self.joints, self.model.nv()))
+    fn trunk_or_whole_mechanism(&self) -> TrunkLimbPartition {
+        self.trunk
+            .clone()
+            .unwrap_or_else(|| TrunkLimbPartition::partition_with_trunk_only(&self.joints, self.model.nv()))
     }
 
     /// Returns the forces that accelerate the mechanism, `τ − h`.
@@ -409,7 +431,7 @@ impl<'a, 'g> DerivativeVariant<'a, 'g> {
     fn linearization_program(&self, tau: &[Expr<'g>]) -> Program {
         let linear =
             derivatives::linearize_equations(self.model, &self.joints, &self.effective, tau, self.method);
-        let mut outputs = linearization_columns(&linear);
+        let mut outputs = linearization_entries_by_column(&linear);
         outputs.extend(entries_by_column(&displacement_commutators(self.model)));
         self.specialisation.lower_to_program(&outputs)
     }
@@ -418,7 +440,9 @@ impl<'a, 'g> DerivativeVariant<'a, 'g> {
     /// displacements.
     fn input_force_program(&self, tau: &[Expr<'g>]) -> Program {
         let mut outputs = tau.to_vec();
-        outputs.extend(force_derivative_entries(&symbolic::force_derivatives(self.model, tau)));
+        outputs.extend(force_derivative_entries(&symbolic::configuration_and_velocity_derivatives(
+            self.model, tau,
+        )));
         outputs.extend(entries_by_column(&symbolic::input_derivatives_of_expressions(self.model, tau)));
         outputs.extend(entries_by_column(&displacement_commutators(self.model)));
         self.specialisation.lower_to_program(&outputs)
@@ -428,7 +452,9 @@ impl<'a, 'g> DerivativeVariant<'a, 'g> {
     /// displacements.
     fn input_program_without_commutators(&self, tau: &[Expr<'g>]) -> Program {
         let mut outputs = tau.to_vec();
-        outputs.extend(force_derivative_entries(&symbolic::force_derivatives(self.model, tau)));
+        outputs.extend(force_derivative_entries(&symbolic::configuration_and_velocity_derivatives(
+            self.model, tau,
+        )));
         outputs.extend(entries_by_column(&symbolic::input_derivatives_of_expressions(self.model, tau)));
         self.specialisation.lower_to_program(&outputs)
     }
@@ -465,7 +491,7 @@ impl<'a, 'g> DerivativeVariant<'a, 'g> {
     }
 
     /// Returns the program of `M⁻¹` and the form of its outputs; after the accelerations if `accelerated`.
-    fn inverse_mass_matrix_program(&self, accelerated: bool) -> (Program, Structure) {
+    fn inverse_mass_matrix_program(&self, accelerated: bool) -> (Program, MatrixStructure) {
         let (program, inverse) = match self.inverts_in_runtime_loops() {
             true => {
                 let trunk = self.trunk_or_whole_mechanism();
@@ -475,9 +501,9 @@ impl<'a, 'g> DerivativeVariant<'a, 'g> {
                 };
                 (self.inverse_terms_program(accelerated), parted)
             }
-            false => (self.inverse(accelerated), self.form_of_inverse()),
+            false => (self.straight_line_mass_inverse_program(accelerated), self.form_of_inverse()),
         };
-        (program, Structure { inverse, ..Structure::default() })
+        (program, MatrixStructure { inverse, ..MatrixStructure::default() })
     }
 
     /// Returns the form of the inverse that straight-line code computes.
@@ -498,7 +524,7 @@ fn force_derivative_entries<'g>(d: &ForceDerivatives<'g>) -> Vec<Expr<'g>> {
     [&d.by_q, &d.by_v].into_iter().flat_map(entries_by_column).collect()
 }
 
-fn linearization_columns<'g>(l: &LinearizedEquations<'g>) -> Vec<Expr<'g>> {
+fn linearization_entries_by_column<'g>(l: &LinearizedEquations<'g>) -> Vec<Expr<'g>> {
     let mut all = force_derivative_entries(&l.forces);
     all.extend(entries_by_column(&l.inverse));
     all.extend(entries_by_column(&l.by_u));

@@ -7,7 +7,7 @@ use crate::expr::Expr;
 use crate::kinematics::Joint;
 use crate::lower::Program;
 use crate::machine::{COMPARED_OPERATIONS, COMPARED_VELOCITIES};
-use crate::mechanics::derivatives::Factor;
+use crate::mechanics::derivatives::MatrixFactorisation;
 use crate::mechanics::limb_contacts::LimbContacts;
 use crate::mechanics::speeds::{ResultKind, SpeedTransformation};
 use crate::mechanics::{self, crba, energy, frames, limb_responses, momentum};
@@ -26,7 +26,7 @@ use variants::Variants;
 const SIMILAR: usize = 8;
 
 /// The variants of a model from which the functions of dynamics are derived.
-pub(super) struct Dynamics<'g> {
+pub(super) struct DynamicsDerivation<'g> {
     /// Variants of the model for each frame choice that may be the cheapest, the best first.
     choices: Vec<Variants<'g>>,
     /// True if the results are in declared generalized speeds.
@@ -39,7 +39,7 @@ pub(super) struct Dynamics<'g> {
     bias: Program,
 }
 
-impl<'g> Dynamics<'g> {
+impl<'g> DynamicsDerivation<'g> {
     /// Derives mass matrix, inverse dynamics and bias of all variants. The variants have moved frames; for a
     /// small mechanism also the original frames, and frames with common axes. With `speeds`, results are
     /// transformed to generalized speeds.
@@ -48,7 +48,7 @@ impl<'g> Dynamics<'g> {
         passes: Passes,
         specialisation: ParameterSpecialisation,
         speeds: Option<&Rc<SpeedTransformation<'g>>>,
-    ) -> Dynamics<'g> {
+    ) -> DynamicsDerivation<'g> {
         let mut all = FrameChoice::candidate_frame_choices(model, passes, specialisation, speeds);
         all.sort_by_key(|choice| choice.size);
         if model.nv() > COMPARED_VELOCITIES {
@@ -76,7 +76,7 @@ impl<'g> Dynamics<'g> {
             biases.min_by_key(|p| (p.counts.total_operations(), p.instruction_count_after_fusion())).cloned();
         let biases_in_lanes =
             choices.iter().filter_map(|variants| Some(variants.bias.simd.as_ref()?.1.clone()));
-        Dynamics {
+        DynamicsDerivation {
             mass_matrix: specialisation.cheapest_program(masses.into_iter()).with_cheapest_lane_variant(wide),
             inverse_dynamics: specialisation
                 .cheapest_program(recursions.into_iter())
@@ -115,7 +115,7 @@ impl<'g> Dynamics<'g> {
 
     pub(super) fn momentum_rate(&self) -> Program {
         self.smallest_program(ResultKind::MomentumRate, |m, j, v| {
-            let mut rate = momentum::momentum_rate(m, j, v);
+            let mut rate = momentum::momentum_rate_without_inputs(m, j, v);
             if self.in_speeds {
                 rate.extend(momentum::generalized_momentum(m, j, v));
             }
@@ -127,7 +127,7 @@ impl<'g> Dynamics<'g> {
         self.smallest_program(ResultKind::Scalars, |m, j, _| energy::center_of_mass(m, j).0.to_vec())
     }
 
-    pub(super) fn momentum_program(&self) -> Program {
+    pub(super) fn centroidal_momentum(&self) -> Program {
         self.smallest_program(ResultKind::Scalars, |m, j, v| {
             frames::spatial_components(&momentum::centroidal_momentum(m, j, v))
         })
@@ -165,10 +165,10 @@ impl<'g> Dynamics<'g> {
         self.best_variant_program(|variants| {
             let plain = variants.cheapest_program(ResultKind::Responses(rows.len()), |model| {
                 let mass = crba::mass_matrix(model, &variants.joints);
-                Factor::new(&mass, &variants.joints).constraint_responses(rows)
+                MatrixFactorisation::new(&mass, &variants.joints).constraint_responses(rows)
             });
             let limbs = variants
-                .limbs_for_all_functions()
+                .vectorised_mechanisms_for_all_functions()
                 .filter_map(|limbs| limb_responses::limb_contact_responses(limbs, rows));
             plain.with_cheapest_lane_variant(cheapest_lane_programs(self.specialisation, limbs))
         })
@@ -176,13 +176,16 @@ impl<'g> Dynamics<'g> {
 
     /// Returns a contact function, whose contact velocities have these rows, with the version in which
     /// identical limbs are SIMD lanes, if one exists.
-    pub(super) fn with_limb_contacts(
+    pub(super) fn with_limb_lane_variant(
         &self,
         plain: Program,
         rows: &crba::Matrix<'g>,
         outputs: impl FnOnce(&mut LimbContacts<'_, 'g>) -> Option<Vec<Expr<'g>>>,
     ) -> Program {
-        let limbs = self.choices.first().and_then(|variants| variants.limbs_for_all_functions().next());
+        let limbs = self
+            .choices
+            .first()
+            .and_then(|variants| variants.vectorised_mechanisms_for_all_functions().next());
         let mut contacts = limbs.and_then(|limbs| LimbContacts::new(limbs, rows));
         let found = contacts.as_mut().and_then(outputs);
         plain.with_cheapest_lane_variant(found.map(|outputs| self.specialisation.lower_to_program(&outputs)))
@@ -210,11 +213,11 @@ impl<'g> Dynamics<'g> {
     /// dependency chains of articulated bodies are longer.
     pub(super) fn forward_dynamics(&self) -> Program {
         let articulated: Vec<Candidate<'g>> =
-            self.choices.iter().flat_map(Variants::articulated_body_candidates).collect();
+            self.choices.iter().flat_map(Variants::articulated_forward_dynamics_candidates).collect();
         let is_large = self.is_large;
         let factorised: Vec<Candidate<'g>> = match is_large && !articulated.is_empty() {
             true => Vec::new(),
-            false => self.choices.iter().flat_map(Variants::factorisation_candidates).collect(),
+            false => self.choices.iter().flat_map(Variants::factorised_forward_dynamics_candidates).collect(),
         };
         let is_larger = smallest_candidate_size(&factorised)
             .is_none_or(|f| smallest_candidate_size(&articulated).is_some_and(|a| f > a));
@@ -242,20 +245,20 @@ fn lane_mass_matrix_programs<'g>(
     wide: &[usize],
 ) -> Vec<Program> {
     let limb_lane_mass_programs = |most| {
-        let mass_matrices = move |variants: &Variants<'g>| {
+        let limb_lane_mass_matrices = move |variants: &Variants<'g>| {
             variants
-                .limbs_for_all_functions()
+                .vectorised_mechanisms_for_all_functions()
                 .map(|limbs| limb_lanes::mass_matrix(limbs, most))
                 .collect::<Vec<_>>()
         };
-        cheapest_lane_programs(specialisation, choices.iter().flat_map(mass_matrices))
+        cheapest_lane_programs(specialisation, choices.iter().flat_map(limb_lane_mass_matrices))
     };
     let column_lane_mass_programs = |most| {
-        let mass_matrices = move |variants: &Variants<'g>| {
+        let column_lane_mass_matrices = move |variants: &Variants<'g>| {
             let all = variants.variants_for_all_functions();
             all.map(|m| crba::mass_matrix_in_lanes(m, &variants.joints, most).concat()).collect::<Vec<_>>()
         };
-        cheapest_lane_programs(specialisation, choices.iter().flat_map(mass_matrices))
+        cheapest_lane_programs(specialisation, choices.iter().flat_map(column_lane_mass_matrices))
     };
     [1].iter()
         .chain(wide)

@@ -2,7 +2,7 @@
 //! gathering the state and scattering the results.
 
 use crate::expr::Expr;
-use crate::mechanics::derivatives::{ForceDerivatives, Inverse, analytic, symbolic};
+use crate::mechanics::derivatives::{BlockInverseMassMatrix, ForceDerivatives, analytic, symbolic};
 use crate::mechanics::{aba, crba, rnea};
 use crate::mechanism::{Model, Quantity};
 use crate::vectorise::VectorisedMechanism;
@@ -14,8 +14,8 @@ pub fn mass_matrix<'g>(limbs: &VectorisedMechanism<'g>, most: usize) -> Vec<Expr
 
 /// Returns inverse dynamics, or the bias if `accelerations` is false.
 pub fn inverse_dynamics<'g>(limbs: &VectorisedMechanism<'g>, accelerations: bool) -> Vec<Expr<'g>> {
-    let v = limbs.symbols_of_quantity(Quantity::Velocity);
-    let a = accelerations.then(|| limbs.symbols_of_quantity(Quantity::Acceleration));
+    let v = limbs.lane_symbols_per_velocity(Quantity::Velocity);
+    let a = accelerations.then(|| limbs.lane_symbols_per_velocity(Quantity::Acceleration));
     let tau = rnea::inverse_dynamics(&limbs.model, &limbs.joints, &v, a.as_deref());
     let whole: Vec<Expr<'g>> = tau.iter().zip(limbs.passive_forces()).map(|(t, h)| *t + *h).collect();
     limbs.scatter_to_velocities(&whole)
@@ -27,9 +27,9 @@ pub fn forward_dynamics<'g>(
     limbs: &VectorisedMechanism<'g>,
     bias: &VectorisedMechanism<'g>,
 ) -> Option<Vec<Expr<'g>>> {
-    let v = limbs.symbols_of_quantity(Quantity::Velocity);
+    let v = limbs.lane_symbols_per_velocity(Quantity::Velocity);
     let wrenches = rnea::link_wrenches(&bias.model, &bias.joints, &v, None);
-    let tau = limbs.symbols_of_quantity(Quantity::Force);
+    let tau = limbs.lane_symbols_per_velocity(Quantity::Force);
     let r: Vec<Expr<'g>> = tau.iter().zip(limbs.passive_forces()).map(|(t, h)| *t - *h).collect();
     let a = aba::forward_dynamics(&limbs.model, &limbs.joints, wrenches, &r)?;
     Some(limbs.scatter_to_velocities(&a))
@@ -43,7 +43,7 @@ pub fn inverse_dynamics_derivatives<'g>(
     a: &[Expr<'g>],
     most: usize,
 ) -> ForceDerivatives<'g> {
-    let v = limbs.symbols_of_quantity(Quantity::Velocity);
+    let v = limbs.lane_symbols_per_velocity(Quantity::Velocity);
     let found = analytic::inverse_dynamics(&limbs.model, &limbs.joints, &v, a, most);
     let [by_q, by_v] = [found.by_q, found.by_v].map(|m| matrix_rows_of_whole_mechanism(limbs, &m));
     let mut scattered = ForceDerivatives { by_q, by_v };
@@ -53,7 +53,7 @@ pub fn inverse_dynamics_derivatives<'g>(
 
 /// Returns a Coriolis matrix of the vectorised mechanism by rows, in up to `most` SIMD lanes.
 pub fn coriolis_matrix<'g>(limbs: &VectorisedMechanism<'g>, most: usize) -> crba::Matrix<'g> {
-    let v = limbs.symbols_of_quantity(Quantity::Velocity);
+    let v = limbs.lane_symbols_per_velocity(Quantity::Velocity);
     matrix_rows_of_whole_mechanism(limbs, &analytic::coriolis_matrix(&limbs.model, &limbs.joints, &v, most))
 }
 
@@ -61,15 +61,15 @@ pub fn coriolis_matrix<'g>(limbs: &VectorisedMechanism<'g>, most: usize) -> crba
 /// matrix.
 pub fn accelerations_in_lanes<'g>(
     limbs: &VectorisedMechanism<'g>,
-    inverse: &Inverse<'_, 'g>,
+    inverse: &BlockInverseMassMatrix<'_, 'g>,
 ) -> Vec<Expr<'g>> {
     inverse.solve_by_trunk_and_limbs(&unbalanced_forces(limbs))
 }
 
 /// Returns `τ − h` of the vectorised mechanism, whose identical limbs are SIMD lanes.
 pub fn unbalanced_forces<'g>(limbs: &VectorisedMechanism<'g>) -> Vec<Expr<'g>> {
-    let v = limbs.symbols_of_quantity(Quantity::Velocity);
-    let tau = limbs.symbols_of_quantity(Quantity::Force);
+    let v = limbs.lane_symbols_per_velocity(Quantity::Velocity);
+    let tau = limbs.lane_symbols_per_velocity(Quantity::Force);
     let bias = rnea::inverse_dynamics(&limbs.model, &limbs.joints, &v, None);
     let resisted = tau.iter().zip(limbs.passive_forces()).map(|(t, h)| *t - *h);
     resisted.zip(bias).map(|(r, h)| r - h).collect()
@@ -77,7 +77,7 @@ pub fn unbalanced_forces<'g>(limbs: &VectorisedMechanism<'g>) -> Vec<Expr<'g>> {
 
 /// Scatters the inverse mass matrix of the mechanism in lanes to that of the whole mechanism: a matrix, and
 /// the columns of the low-rank term.
-pub fn inverse<'g>(
+pub fn scatter_inverse_to_whole_mechanism<'g>(
     limbs: &VectorisedMechanism<'g>,
     [matrix, trunk_factors]: &[crba::Matrix<'g>; 2],
 ) -> [crba::Matrix<'g>; 2] {

@@ -1,6 +1,6 @@
 //! Result of the derivation: everything that code generation writes.
 
-use crate::catalogue::{Argument, Called, DeclaredFunction, Id, Shape, Structure};
+use crate::catalogue::{Argument, CalledFunction, DeclaredFunction, GeneratedId, MatrixStructure, Shape};
 use crate::equations::PrintedEquations;
 use crate::lower::Program;
 use crate::mechanism::{BLOCK_LENGTH, Chart, LINK_QUANTITIES, LinkBlock, MASS_PROPERTIES, Piece, Quantity};
@@ -9,7 +9,7 @@ use crate::mechanism::{BLOCK_LENGTH, Chart, LINK_QUANTITIES, LinkBlock, MASS_PRO
 #[derive(Clone)]
 pub struct Function {
     /// Identifier of the function in the catalogue.
-    pub id: Id,
+    pub id: GeneratedId,
     /// Name of the generated function.
     pub name: String,
     /// Documentation of the function, one paragraph per entry; empty for a hidden function.
@@ -21,7 +21,7 @@ pub struct Function {
     /// Program that computes the result of the function.
     pub program: Program,
     /// Structure of its matrices: zeros, packed entries, form of an inverse.
-    pub structure: Structure,
+    pub structure: MatrixStructure,
     /// Form with loops over blocks of links, if it is faster than the program for a single state.
     pub loops: Option<Box<BlockLoopDerivatives>>,
 }
@@ -44,31 +44,31 @@ pub struct BlockLoopDerivatives {
 
 impl BlockLoopDerivatives {
     /// Returns the number of outputs with quantities of links, which are followed by their mass properties.
-    pub fn link_output_count(&self) -> usize {
+    pub fn link_quantity_output_count(&self) -> usize {
         self.blocks.len() * LINK_QUANTITIES * BLOCK_LENGTH
     }
 
     /// Returns the number of outputs with mass properties, which are followed by the acceleration opposite to
     /// gravity and by the derivatives of passive forces.
-    pub fn inertia_output_count(&self) -> usize {
+    pub fn mass_property_output_count(&self) -> usize {
         self.blocks.len() * MASS_PROPERTIES * BLOCK_LENGTH
     }
 
     fn output_count(&self) -> usize {
-        self.link_output_count() + self.inertia_output_count() + 3 + self.passive.len()
+        self.link_quantity_output_count() + self.mass_property_output_count() + 3 + self.passive.len()
     }
 }
 
 impl Function {
     /// Returns a declared function with its program and the structure of its matrices.
-    pub fn new(declared: DeclaredFunction, program: Program, structure: Structure) -> Function {
+    pub fn new(declared: DeclaredFunction, program: Program, structure: MatrixStructure) -> Function {
         let DeclaredFunction { id, name, docs, arguments, shape } = declared;
         Function { id, name, docs, arguments, shape, program, structure, loops: None }
     }
 
     /// Returns an empty function for a mechanism with an error.
     pub fn empty_function(declared: DeclaredFunction) -> Function {
-        Function::new(declared, Program::default(), Structure::default())
+        Function::new(declared, Program::default(), MatrixStructure::default())
     }
 
     /// Returns a hidden function that computes a part of another function.
@@ -80,13 +80,13 @@ impl Function {
     ) -> Function {
         let shape = Shape::Array(length);
         Function {
-            id: Id::Part,
+            id: GeneratedId::Part,
             name,
             docs: Vec::new(),
             arguments,
             shape,
             program,
-            structure: Structure::default(),
+            structure: MatrixStructure::default(),
             loops: None,
         }
     }
@@ -97,9 +97,11 @@ impl Function {
     }
 
     /// Returns true if the program reads results of another function.
-    pub fn reads_results_of(&self, called: Called) -> bool {
+    pub fn reads_results_of(&self, called: CalledFunction) -> bool {
         let symbols = self.program.used_symbols();
-        symbols.iter().any(|s| Argument::Called(called).index(Quantity::from_symbol(*s)).is_some())
+        symbols
+            .iter()
+            .any(|s| Argument::Called(called).index_of_quantity(Quantity::from_symbol(*s)).is_some())
     }
 
     /// Returns true if the program, its version in lanes and that with loops have the expected number of
@@ -123,22 +125,26 @@ impl Function {
     /// Returns true for a quantity stored in the mechanism, for an entry of an argument, and for a result of
     /// a function that every function may call.
     fn is_available_argument(&self, quantity: Quantity) -> bool {
-        let called = Called::ALL.map(Argument::Called);
+        let called = CalledFunction::ALL.map(Argument::Called);
         match quantity {
             Quantity::Parameter(_) | Quantity::Prepared(_) | Quantity::Time => true,
-            _ => self.arguments.iter().chain(&called).any(|argument| argument.index(quantity).is_some()),
+            _ => self
+                .arguments
+                .iter()
+                .chain(&called)
+                .any(|argument| argument.index_of_quantity(quantity).is_some()),
         }
     }
 }
 
 /// Functions and data that are derived from a model, from which code is emitted.
-pub struct Output {
+pub struct DerivationOutput {
     /// Functions to be emitted, each with its documentation, shape and program.
     pub functions: Vec<Function>,
     /// Kinematic programs of the links.
     pub links: Vec<LinkRecursionPrograms>,
     /// Kinematic programs of the named frames.
-    pub frames: Vec<FrameSteps>,
+    pub frames: Vec<FrameRecursionPrograms>,
     /// First indices in `q` and `v` of each joint, with its kind of configuration space, in the order of `v`.
     pub charts: Vec<Chart>,
     /// The equations of motion for printing; empty for large mechanisms.
@@ -146,12 +152,12 @@ pub struct Output {
     /// The linearised equations of every declared equilibrium.
     pub linear_equations: Vec<PrintedEquations>,
     /// Variants of functions with precomputed values, if the option `prepare` is set.
-    pub prepared: Option<Prepared>,
+    pub prepared: Option<PreparedFunctions>,
     /// Associated constants in addition to sizes and names.
     pub constants: Vec<AssociatedConstant>,
 }
 
-impl Output {
+impl DerivationOutput {
     /// Returns all functions, including the functions of the prepared mechanism.
     pub fn all_functions(&self) -> impl Iterator<Item = &Function> {
         self.functions.iter().chain(self.prepared.iter().flat_map(|prepared| &prepared.functions))
@@ -163,7 +169,7 @@ impl Output {
         self.all_functions()
             .map(|f| &f.program)
             .chain(numbers)
-            .find_map(Program::non_finite_constant_operation)
+            .find_map(Program::nonfinite_constant_operation_text)
     }
 
     /// Returns the name of a function whose program does not fit its arguments or its result. This is an
@@ -180,7 +186,7 @@ impl Output {
 }
 
 /// Functions of the option `prepare`.
-pub struct Prepared {
+pub struct PreparedFunctions {
     /// Program of the precomputed values, as functions of the parameters.
     pub numbers: Program,
     /// Functions of the state and the precomputed values.
@@ -219,7 +225,7 @@ impl LinkRecursionPrograms {
 }
 
 /// Programs for the placement and twist of a named frame from those of its link.
-pub struct FrameSteps {
+pub struct FrameRecursionPrograms {
     /// Name of the frame.
     pub name: String,
     /// Link in which the frame is fixed; `None` for the ground.
@@ -234,7 +240,7 @@ pub struct FrameSteps {
     pub acceleration: Program,
 }
 
-impl FrameSteps {
+impl FrameRecursionPrograms {
     fn has_declared_inputs_and_outputs(&self) -> bool {
         [&self.placement, &self.twist, &self.acceleration].map(|program| program.outputs.len())
             == [PLACEMENT, TWIST, TWIST]
@@ -317,7 +323,7 @@ impl AssociatedConstant {
 
     /// Returns the lists of the linearised equations of declared equilibria, each with its name; empty
     /// without equilibria.
-    pub fn linear_equations(all: &[(String, PrintedEquations)]) -> Vec<AssociatedConstant> {
+    pub fn linear_equation_constants(all: &[(String, PrintedEquations)]) -> Vec<AssociatedConstant> {
         if all.is_empty() {
             return Vec::new();
         }

@@ -1,7 +1,7 @@
 //! Derivation of declared outputs: their functions, their Jacobians, and reactions.
 
 use crate::catalogue::{
-    self, BY_PARAMETERS, DERIVATIVES, DeclaredFunction, Facts, Id, JACOBIAN, REACTION, TOUCHED,
+    self, BY_PARAMETERS, DERIVATIVES, DeclaredFunction, Facts, GeneratedId, JACOBIAN, REACTION, TOUCHED,
 };
 use crate::expr::Expr;
 use crate::expr::diff::DirectionalDerivative;
@@ -47,21 +47,23 @@ fn quantities_used_by_output(output: &OutputExpression<'_>) -> UsedQuantities {
 /// Returns the values of a declared output function.
 pub fn output_function_expressions<'g>(model: &Model<'g>, declared: &DeclaredFunction) -> Vec<Expr<'g>> {
     let name = match declared.id {
-        Id::Reaction => declared.name.strip_prefix(REACTION),
-        Id::Touched => declared.name.strip_prefix(TOUCHED),
-        Id::OutputJacobian => declared.name.strip_suffix(JACOBIAN),
-        Id::OutputDerivatives => declared.name.strip_suffix(DERIVATIVES),
-        Id::OutputByParameters => declared.name.strip_suffix(BY_PARAMETERS),
+        GeneratedId::Reaction => declared.name.strip_prefix(REACTION),
+        GeneratedId::Touched => declared.name.strip_prefix(TOUCHED),
+        GeneratedId::OutputJacobian => declared.name.strip_suffix(JACOBIAN),
+        GeneratedId::OutputDerivatives => declared.name.strip_suffix(DERIVATIVES),
+        GeneratedId::OutputByParameters => declared.name.strip_suffix(BY_PARAMETERS),
         _ => Some(declared.name.as_str()),
     };
     let Some(output) = model.outputs.iter().find(|output| Some(output.name.as_str()) == name) else {
         return Vec::new();
     };
     match declared.id {
-        Id::Reaction => reactions::replace_reactions(model, &output.values, output.diagram.is_some()),
-        Id::OutputJacobian => output_jacobian(model, output),
-        Id::OutputDerivatives => output_derivatives(model, &output.values),
-        Id::OutputByParameters => parameter_derivatives(model, &output.values),
+        GeneratedId::Reaction => {
+            reactions::replace_reactions(model, &output.values, output.diagram.is_some())
+        }
+        GeneratedId::OutputJacobian => output_jacobian(model, output),
+        GeneratedId::OutputDerivatives => output_derivatives(model, &output.values),
+        GeneratedId::OutputByParameters => parameter_derivatives(model, &output.values),
         _ => output.values.clone(),
     }
 }
@@ -69,7 +71,7 @@ pub fn output_function_expressions<'g>(model: &Model<'g>, declared: &DeclaredFun
 /// Returns the derivatives with respect to configuration, velocity, acceleration and input, each column by
 /// column.
 fn output_derivatives<'g>(model: &Model<'g>, values: &[Expr<'g>]) -> Vec<Expr<'g>> {
-    let by_state = symbolic::force_derivatives(model, values);
+    let by_state = symbolic::configuration_and_velocity_derivatives(model, values);
     let blocks = [
         (by_state.by_q, model.nv()),
         (by_state.by_v, model.nv()),

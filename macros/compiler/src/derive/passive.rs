@@ -10,14 +10,17 @@ use std::rc::Rc;
 
 /// Returns the model with passive forces as symbols if they take enough operations, otherwise `None`. Their
 /// derivatives are computed only if `derivatives` is true.
-pub(super) fn with_passive_force_arguments<'g>(model: &Model<'g>, derivatives: bool) -> Option<Model<'g>> {
+pub(super) fn model_with_passive_force_symbols<'g>(
+    model: &Model<'g>,
+    derivatives: bool,
+) -> Option<Model<'g>> {
     if passive_operation_count(model) < CALLED_OPERATIONS {
         return None;
     }
     let forces = passive_forces(model, true);
     let passive = match derivatives {
         true => {
-            let found = symbolic::force_derivatives(model, &forces);
+            let found = symbolic::configuration_and_velocity_derivatives(model, &forces);
             PassiveForces::new(forces, &found.by_q, &found.by_v)
         }
         false => PassiveForces::new(forces, &[], &[]),

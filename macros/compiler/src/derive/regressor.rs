@@ -40,7 +40,7 @@ impl<'a, 'g> IdentificationFunctions<'a, 'g> {
     }
 
     /// Returns the numbers of bodies and of base parameters.
-    pub(super) fn body_and_parameter_counts(&self) -> [usize; 2] {
+    pub(super) fn body_and_base_parameter_counts(&self) -> [usize; 2] {
         [self.bodies.len(), self.base.entries.len()]
     }
 
@@ -48,9 +48,11 @@ impl<'a, 'g> IdentificationFunctions<'a, 'g> {
     pub(super) fn identification_name_constants(&self) -> Vec<AssociatedConstant> {
         let body_or_velocity_name_of_link = |k: usize| {
             let body = self.bodies.iter().find(|body| body.link == Some(LinkId(k)));
-            let first_velocity = || kinematics::joints_of_model(self.model)[k].dofs.first().map(|d| d.index);
-            let name_of_first_velocity =
-                || first_velocity().map_or(String::new(), |v| self.model.velocities[v].0.clone());
+            let first_velocity_index_of_link =
+                || kinematics::joints_of_model(self.model)[k].dofs.first().map(|d| d.index);
+            let name_of_first_velocity = || {
+                first_velocity_index_of_link().map_or(String::new(), |v| self.model.velocities[v].0.clone())
+            };
             body.map_or_else(name_of_first_velocity, |body| body.name.clone())
         };
         let base = self
@@ -65,7 +67,7 @@ impl<'a, 'g> IdentificationFunctions<'a, 'g> {
     pub(super) fn joint_torque_regressor(&self, joints: &[Joint<'g>]) -> Vec<Expr<'g>> {
         let (v, a) = (mechanics::velocity_symbols(self.model), mechanics::acceleration_symbols(self.model));
         let sites: Vec<RegressorFrame<'g>> =
-            self.bodies.iter().filter_map(|body| site_of_body(body)).collect();
+            self.bodies.iter().filter_map(|body| regressor_frame_of_body(body)).collect();
         let all: Vec<(usize, usize)> =
             (0..sites.len()).flat_map(|k| (0..COUNT).map(move |p| (k, p))).collect();
         regressor_columns(self.model, joints, &v, &a, &sites, &all).concat()
@@ -82,7 +84,7 @@ impl<'a, 'g> IdentificationFunctions<'a, 'g> {
     /// Returns the standard parameters of the bodies in the model.
     pub(super) fn standard_parameters(&self) -> Vec<Expr<'g>> {
         let zero = Inertia::zero(self.model.graph);
-        let sites = self.bodies.iter().filter_map(|body| site_of_body(body));
+        let sites = self.bodies.iter().filter_map(|body| regressor_frame_of_body(body));
         sites
             .flat_map(|site| {
                 let back = site.pose.inverse();
@@ -93,7 +95,7 @@ impl<'a, 'g> IdentificationFunctions<'a, 'g> {
     }
 }
 
-fn site_of_body<'g>(body: &NamedFrame<'g>) -> Option<RegressorFrame<'g>> {
+fn regressor_frame_of_body<'g>(body: &NamedFrame<'g>) -> Option<RegressorFrame<'g>> {
     Some(RegressorFrame { link: body.link?, pose: body.pose.clone() })
 }
 
@@ -107,7 +109,7 @@ fn derive_base_parameters<'g>(
     let g = model.graph;
     let mut given = model.clone();
     given.links.iter_mut().for_each(|link| link.inertia = Inertia::zero(g));
-    for (k, site) in bodies.iter().filter_map(|body| site_of_body(body)).enumerate() {
+    for (k, site) in bodies.iter().filter_map(|body| regressor_frame_of_body(body)).enumerate() {
         let own = inertia_from_parameters(std::array::from_fn(|p| {
             Quantity::Given(SuppliedQuantity::Inertia, COUNT * k + p).expr(g)
         }));

@@ -10,7 +10,7 @@ use crate::mechanism::Model;
 
 /// Returns the second derivatives of inverse dynamics, by recursion (also in each of the lane counts `wide`)
 /// or by differentiation.
-pub(super) fn inverse_dynamics<'g>(
+pub(super) fn inverse_dynamics_second_derivatives<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
     wide: &[usize],
@@ -47,7 +47,7 @@ pub(super) fn input_power_hessian<'g>(
     tau: &[Expr<'g>],
     specialisation: ParameterSpecialisation,
 ) -> Program {
-    let InputHessian { state: by_state, qu, vu, uu } = second::hessian_of_inputs(model, tau);
+    let InputHessian { state: by_state, qu, vu, uu } = second::hessian_of_input_power(model, tau);
     let [qq, qv, vv, _] = state_hessian_blocks(&by_state);
     let blocks = [qq, qv, vv, entries_by_column(&qu), entries_by_column(&vu), entries_by_column(&uu)];
     specialisation.lower_to_program(&blocks.concat())

@@ -52,11 +52,11 @@ impl<'g> SensitivityDerivation<'g> {
         SensitivityDerivation { variant, inverse, specialisation }
     }
 
-    pub(super) fn inverse_dynamics(&self) -> Program {
+    pub(super) fn inverse_dynamics_sensitivities(&self) -> Program {
         self.inverse.clone()
     }
 
-    pub(super) fn forward_dynamics(&self) -> Program {
+    pub(super) fn forward_dynamics_sensitivities(&self) -> Program {
         let accelerations = self.variant.as_ref().map_or_else(Vec::new, acceleration_sensitivities);
         self.specialisation.lower_to_program(&accelerations.concat())
     }

@@ -14,18 +14,18 @@ pub fn items_that_mechanism_lacks(
     functions: &[Function],
     outputs: &[String],
 ) -> Vec<AbsentFunctions> {
-    let in_lanes = |name: &str| format!("{name}_lanes");
+    let lane_variant_name = |name: &str| format!("{name}_lanes");
     let absent_for_need = |(need, rows): (FunctionNeed, Vec<&Row>)| {
         let mut names: Vec<String> = rows.iter().map(|row| row.name.to_string()).collect();
         if need == FunctionNeed::Asks(RequestOption::Derivatives) && !facts.requests.derivatives {
             names.extend(OF_TRAITS.map(ToString::to_string));
         }
         if facts.requests.batch {
-            names.extend(rows.iter().filter(|row| row.batched).map(|row| in_lanes(row.name)));
+            names.extend(rows.iter().filter(|row| row.batched).map(|row| lane_variant_name(row.name)));
         } else if need == FunctionNeed::Asks(RequestOption::Batch) {
             let of_state = functions.iter().filter(|f| !f.is_hidden() && !f.arguments.is_empty());
-            names.extend(of_state.map(|f| in_lanes(&f.name)));
-            names.extend(catalogue::handwritten_batched_functions(facts).map(in_lanes));
+            names.extend(of_state.map(|f| lane_variant_name(&f.name)));
+            names.extend(catalogue::handwritten_batched_functions(facts).map(lane_variant_name));
         }
         let constants = catalogue::absent_constants(need, facts);
         Some(AbsentFunctions { reason: need.trait_name_of_need()?, functions: names, constants })
@@ -71,7 +71,7 @@ const OF_FIGURES: [&str; 5] = ["from_file", "inertials", "set_base_parameters", 
 
 impl AbsentFunctions {
     /// Returns the functions and constants of frames, which a prepared mechanism lacks.
-    fn frame_items_of_prepared_struct() -> AbsentFunctions {
+    fn frame_items_prepared_struct_lacks() -> AbsentFunctions {
         AbsentFunctions {
             reason: "HasFrames",
             functions: OF_FRAMES.map(ToString::to_string).to_vec(),
@@ -80,7 +80,7 @@ impl AbsentFunctions {
     }
 
     /// Returns the functions and constants of parameters, which a prepared mechanism lacks.
-    fn absent_parameter_functions(facts: &Facts) -> AbsentFunctions {
+    fn parameter_functions_prepared_struct_lacks(facts: &Facts) -> AbsentFunctions {
         let rows = catalogue::function_catalogue_rows().filter(|row| row.first_unmet_need(facts).is_none());
         let functions = rows.filter(|row| OF_FIGURES.contains(&row.name)).map(|row| row.name.to_string());
         let constants = [("FILE", FunctionNeed::FileParameters), ("LINKS", FunctionNeed::FileInertials)];
@@ -104,8 +104,8 @@ pub fn write_missing_item_declarations(out: &mut String, i: &Interface<'_>, s: &
 /// Writes declarations of everything that the prepared struct `name` lacks.
 pub fn write_items_prepared_struct_lacks(out: &mut String, name: &str, i: &Interface<'_>, s: &Signature<'_>) {
     for absent in i.absent.iter().chain([
-        &AbsentFunctions::frame_items_of_prepared_struct(),
-        &AbsentFunctions::absent_parameter_functions(&i.facts),
+        &AbsentFunctions::frame_items_prepared_struct_lacks(),
+        &AbsentFunctions::parameter_functions_prepared_struct_lacks(&i.facts),
     ]) {
         write_absent_declarations(out, name, absent, &ImplGenerics::new(i, s));
     }

@@ -14,7 +14,7 @@ const TOGETHER: usize = 4;
 /// Calls of sines and cosines under construction: one call for all scalars, or calls for several vectors
 /// each.
 #[derive(Default)]
-pub struct Calls {
+pub struct SineCosineCalls {
     /// Numbers of the program values that the calls of sine and cosine compute.
     pub names: Vec<usize>,
     /// Text of each computed value.
@@ -31,15 +31,15 @@ pub struct Calls {
     bound: usize,
 }
 
-impl Calls {
+impl SineCosineCalls {
     /// Returns an empty list of calls. `in_vectors` combines angles to vectors; `padded` pads a call of
     /// scalars to full registers.
-    pub fn new(in_vectors: bool, padded: bool) -> Calls {
-        Calls { in_vectors, padded, ..Calls::default() }
+    pub fn new(in_vectors: bool, padded: bool) -> SineCosineCalls {
+        SineCosineCalls { in_vectors, padded, ..SineCosineCalls::default() }
     }
 
     /// Adds an angle to the calls, given by the texts of its lanes or the text of a whole vector.
-    pub fn add(&mut self, angle: &Angle, texts: Vec<String>, is_vector: bool) {
+    pub fn add_angle(&mut self, angle: &Angle, texts: Vec<String>, is_vector: bool) {
         let first = self.bound;
         self.bound += texts.len();
         for (value, letter) in [(angle.sine, 's'), (angle.cosine, 'c')] {
@@ -114,12 +114,12 @@ impl Calls {
         }
         let together = if self.padded { self.arguments.len() } else { TOGETHER };
         for group in self.arguments.chunks(together) {
-            let list_bundled_names = |letter| {
+            let join_name_patterns = |letter| {
                 group.iter().map(|(_, n)| pattern_of_names(letter, n)).collect::<Vec<_>>().join(", ")
             };
             let angles: Vec<&str> = group.iter().map(|(text, _)| text.as_str()).collect();
             let (sines, cosines, angles) =
-                (list_bundled_names('s'), list_bundled_names('c'), angles.join(", "));
+                (join_name_patterns('s'), join_name_patterns('c'), angles.join(", "));
             let _ = write!(text, "let ([{sines}], [{cosines}]) = Ops::sin_cos_all([{angles}]); ");
         }
     }

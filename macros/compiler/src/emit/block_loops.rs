@@ -1,6 +1,6 @@
 //! Calls of the runtime's loops over blocks of links.
 
-use super::pieces::{Piece, Statement, array_expression};
+use super::pieces::{ExpressionPiece, Statement, array_expression};
 use super::signature::{Signature, matrix_argument_names};
 use crate::derive::{BlockLoopDerivatives, Function};
 use crate::mechanism::{BLOCK_LENGTH, LINK_QUANTITIES, LinkBlock, MASS_PROPERTIES};
@@ -11,24 +11,28 @@ const RUNTIME: &str = "::linkwork::__private";
 
 /// Returns the statement that declares the array `links` of the quantities of the links. Inputs and constants
 /// are stored in it at once.
-pub fn declaration_of_links(loops: &BlockLoopDerivatives, outputs: &[Piece], zero: &str) -> String {
-    let links = outputs.get(..loops.link_output_count()).unwrap_or(&[]);
+pub fn link_array_declaration(
+    loops: &BlockLoopDerivatives,
+    outputs: &[ExpressionPiece],
+    zero: &str,
+) -> String {
+    let links = outputs.get(..loops.link_quantity_output_count()).unwrap_or(&[]);
     let known = links.iter().map(|piece| if piece.needs.is_empty() { piece.text.as_str() } else { zero });
-    format!("let mut links = {};\n", rows_of_blocks(&known.collect::<Vec<_>>(), LINK_QUANTITIES))
+    format!("let mut links = {};\n", array_of_block_rows(&known.collect::<Vec<_>>(), LINK_QUANTITIES))
 }
 
 /// Returns the statements with those that store the quantities of the links in the array `links`, each after
 /// the quantity is computed.
-pub fn with_stored_links(
+pub fn insert_link_store_statements(
     loops: &BlockLoopDerivatives,
     statements: Vec<Statement>,
-    outputs: &[Piece],
+    outputs: &[ExpressionPiece],
 ) -> Vec<Statement> {
     let names =
         statements.iter().enumerate().flat_map(|(k, s)| s.names.iter().map(move |name| (*name, k + 1)));
     let bound_by: BTreeMap<usize, usize> = names.collect();
     let mut ready: Vec<Vec<Statement>> = (0..=statements.len()).map(|_| Vec::new()).collect();
-    let links = outputs.get(..loops.link_output_count()).unwrap_or(&[]);
+    let links = outputs.get(..loops.link_quantity_output_count()).unwrap_or(&[]);
     for (k, piece) in links.iter().enumerate().filter(|(_, piece)| !piece.needs.is_empty()) {
         let known = piece.needs.iter().filter_map(|need| bound_by.get(need)).max().copied().unwrap_or(0);
         let (row, lane) = (k / BLOCK_LENGTH, k % BLOCK_LENGTH);
@@ -47,8 +51,11 @@ pub fn with_stored_links(
 }
 
 /// Returns the outputs that the call of the loops contains.
-pub fn outputs_of_call<'a>(loops: &BlockLoopDerivatives, outputs: &'a [Piece]) -> &'a [Piece] {
-    outputs.get(loops.link_output_count()..).unwrap_or(&[])
+pub fn outputs_in_loop_call<'a>(
+    loops: &BlockLoopDerivatives,
+    outputs: &'a [ExpressionPiece],
+) -> &'a [ExpressionPiece] {
+    outputs.get(loops.link_quantity_output_count()..).unwrap_or(&[])
 }
 
 /// Returns the call of the loops, which write the derivatives to the matrix arguments, and the statements
@@ -57,10 +64,11 @@ pub fn call_of_loops(
     f: &Function,
     loops: &BlockLoopDerivatives,
     s: &Signature<'_>,
-    outputs: &[Piece],
+    outputs: &[ExpressionPiece],
 ) -> String {
-    let texts: Vec<&str> = outputs_of_call(loops, outputs).iter().map(|piece| piece.text.as_str()).collect();
-    let (inertias, others) = texts.split_at(texts.len().min(loops.inertia_output_count()));
+    let texts: Vec<&str> =
+        outputs_in_loop_call(loops, outputs).iter().map(|piece| piece.text.as_str()).collect();
+    let (inertias, others) = texts.split_at(texts.len().min(loops.mass_property_output_count()));
     let (ground, passive) = others.split_at(others.len().min(3));
     let matrices = matrix_argument_names(f);
     let [by_q, by_v] = matrices.as_slice() else { return String::new() };
@@ -79,7 +87,7 @@ pub fn call_of_loops(
         loops.blocks.len(),
         loops.free,
         blocks.join(", "),
-        rows_of_blocks(inertias, MASS_PROPERTIES),
+        array_of_block_rows(inertias, MASS_PROPERTIES),
         ground.join(", "),
         loops.zeros[0],
         loops.zeros[1],
@@ -92,13 +100,14 @@ pub fn call_of_loops(
 }
 
 /// Returns the array of the rows of all blocks, given the values of their lanes.
-fn rows_of_blocks(values: &[&str], rows: usize) -> String {
-    let row = |lanes: &[&str]| format!("{RUNTIME}::LinkRow({})", array_expression(lanes.to_vec()));
-    let block = |values: &[&str]| {
-        let rows: Vec<String> = values.chunks(BLOCK_LENGTH).map(row).collect();
+fn array_of_block_rows(values: &[&str], rows: usize) -> String {
+    let link_row_expression =
+        |lanes: &[&str]| format!("{RUNTIME}::LinkRow({})", array_expression(lanes.to_vec()));
+    let block_rows_expression = |values: &[&str]| {
+        let rows: Vec<String> = values.chunks(BLOCK_LENGTH).map(link_row_expression).collect();
         format!("[{}]", rows.join(", "))
     };
-    let blocks: Vec<String> = values.chunks(rows * BLOCK_LENGTH).map(block).collect();
+    let blocks: Vec<String> = values.chunks(rows * BLOCK_LENGTH).map(block_rows_expression).collect();
     format!("[{}]", blocks.join(", "))
 }
 

@@ -2,13 +2,13 @@
 //! to names. Blocks have bounded length, because rustc's debug information needs stack for every binding of a
 //! block.
 
-use super::angles::{Calls, WIDTH};
+use super::angles::{SineCosineCalls, WIDTH};
 use super::instruction::{BodyWriter, BuildKind};
-use super::pieces::{Outputs, Piece, Statement, storage_constructor};
+use super::pieces::{ExpressionPiece, OutputTexts, Statement, storage_constructor};
 use super::signature::{Signature, matrix_argument_names, variant_matrix_argument_count};
 use super::statements::{BLOCK, write_body_statement, write_statements};
 use super::{block_loops, matrices, stores};
-use crate::catalogue::{Argument, Called, Shape};
+use crate::catalogue::{Argument, CalledFunction, Shape};
 use crate::derive::Function;
 use crate::expr::Symbol;
 use crate::lower::{Angle, Angles, Operand};
@@ -23,7 +23,7 @@ const LINE: usize = 72;
 /// parameter of the function; otherwise `Ops` is the arithmetic of the compilation target.
 pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>, is_parameter: bool, build: BuildKind) {
     if let Some(count) = variant_matrix_argument_count(f) {
-        out.push_str(&matrices::body_calling_filling_variant(f, count, s));
+        out.push_str(&matrices::body_calling_matrix_argument_variant(f, count, s));
         return;
     }
     // Functions of several states already fill the lanes.
@@ -36,7 +36,7 @@ pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>, is_paramete
         program,
         lanes: program.lane_counts(),
         scalar: s.scalar,
-        arguments: f.arguments.iter().copied().chain(Called::ALL.map(Argument::Called)).collect(),
+        arguments: f.arguments.iter().copied().chain(CalledFunction::ALL.map(Argument::Called)).collect(),
         statements: Vec::new(),
         pieces: vec![None; program.instructions.len()],
         head: 0,
@@ -44,8 +44,8 @@ pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>, is_paramete
         named: is_parameter.then(BTreeSet::new),
     };
     w.write_instructions();
-    let outputs: Vec<Piece> = program.outputs.iter().map(|o| w.output_text(*o)).collect();
-    let mut helpers: Vec<&str> = s.scalar.runtime_functions_of_constants().collect();
+    let outputs: Vec<ExpressionPiece> = program.outputs.iter().map(|o| w.output_text(*o)).collect();
+    let mut helpers: Vec<&str> = s.scalar.runtime_functions_called_by_constants().collect();
     if !is_parameter {
         helpers.extend(["Arithmetic", "Compiled as Ops"]);
     }
@@ -66,14 +66,14 @@ pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>, is_paramete
     let rest = w.statements.split_off(head);
     if let Some(loops) = loops {
         let zero = s.scalar.constant_expression(0.0);
-        out.push_str(&block_loops::declaration_of_links(loops, &outputs, &zero));
-        let rest = block_loops::with_stored_links(loops, rest, &outputs);
-        write_statements(out, &rest, block_loops::outputs_of_call(loops, &outputs));
+        out.push_str(&block_loops::link_array_declaration(loops, &outputs, &zero));
+        let rest = block_loops::insert_link_store_statements(loops, rest, &outputs);
+        write_statements(out, &rest, block_loops::outputs_in_loop_call(loops, &outputs));
         out.push_str(&block_loops::call_of_loops(f, loops, s, &outputs));
         return;
     }
     let is_zero_output = |k: usize| program.outputs.get(k).is_none_or(|o| *o == Operand::Const(0.0));
-    let results = Outputs { pieces: &outputs, is_zero: &is_zero_output };
+    let results = OutputTexts { pieces: &outputs, is_zero: &is_zero_output };
     if !matrix_argument_names(f).is_empty() {
         let (statements, left) = stores::insert_result_stores(f, program, rest, &results);
         write_statements(out, &statements, &left);
@@ -95,7 +95,7 @@ impl BodyWriter<'_> {
         self.write_sines_and_cosines(&angles);
         if !angles.list.is_empty() {
             self.head = self.statements.len();
-            self.early = self.arguments_of_angles(&angles);
+            self.early = self.arguments_determining_angles(&angles);
         }
         for k in 0..self.program.instructions.len() {
             if !angles.before[k] && !angles.covered[k] {
@@ -113,7 +113,7 @@ impl BodyWriter<'_> {
         }
     }
 
-    fn bind_value(&mut self, k: usize, piece: Piece) {
+    fn bind_value(&mut self, k: usize, piece: ExpressionPiece) {
         self.statements.push(Statement {
             names: vec![k],
             pattern: format!("t{k}"),
@@ -123,21 +123,21 @@ impl BodyWriter<'_> {
     }
 
     /// Returns the arguments of the function on which the angles depend.
-    fn arguments_of_angles(&self, angles: &Angles) -> Vec<Argument> {
+    fn arguments_determining_angles(&self, angles: &Angles) -> Vec<Argument> {
         let mut symbols = Vec::new();
-        let mut note = |o: Operand| match o {
+        let mut collect_input_symbols = |o: Operand| match o {
             Operand::Symbol(s) => symbols.push(s),
             Operand::Gather(k) => symbols.extend(&self.program.gathers[k]),
             _ => {}
         };
-        angles.list.iter().for_each(|angle| note(angle.angle));
+        angles.list.iter().for_each(|angle| collect_input_symbols(angle.angle));
         for (op, before) in self.program.instructions.iter().zip(&angles.before) {
             if *before {
-                op.visit_operands(&mut note);
+                op.visit_operands(&mut collect_input_symbols);
             }
         }
         let is_argument_used =
-            |a: &Argument| symbols.iter().any(|s| a.index(Quantity::from_symbol(*s)).is_some());
+            |a: &Argument| symbols.iter().any(|s| a.index_of_quantity(Quantity::from_symbol(*s)).is_some());
         self.arguments.iter().copied().filter(is_argument_used).collect()
     }
 
@@ -159,11 +159,11 @@ impl BodyWriter<'_> {
         let of_state = !self.scalar.uses_batch_lanes();
         let in_vectors =
             !self.program.gathers.is_empty() || (of_state && angles.list.iter().any(is_angle_sum));
-        let mut calls = Calls::new(in_vectors, of_state);
+        let mut calls = SineCosineCalls::new(in_vectors, of_state);
         let mut needs = Vec::new();
         for angle in angles.angles_by_descending_width(self.program, |o| self.lane_count(o)) {
             let texts = self.texts_of_angle_lanes(angle.angle, &mut needs);
-            calls.add(angle, texts, self.lane_count(angle.angle) == WIDTH);
+            calls.add_angle(angle, texts, self.lane_count(angle.angle) == WIDTH);
         }
         if calls.names.is_empty() {
             return;
@@ -231,7 +231,7 @@ fn write_input_bindings(out: &mut String, arguments: &[Argument], s: &Signature<
             (false, true) => writeln!(out, "let [{list}] = *Ops::each(&{name}.data.0[0]);"),
         };
         for (k, gather) in w.program.gathers.iter().enumerate() {
-            if gather.iter().any(|s| argument.index(Quantity::from_symbol(*s)).is_some()) {
+            if gather.iter().any(|s| argument.index_of_quantity(Quantity::from_symbol(*s)).is_some()) {
                 let _ = writeln!(out, "let lanes{k} = {};", w.gathered_vector(gather));
             }
         }
@@ -242,7 +242,9 @@ fn write_input_bindings(out: &mut String, arguments: &[Argument], s: &Signature<
 /// none. Unused entries are not bound, because rustc takes long for unused variables.
 fn argument_pattern(argument: Argument, n: usize, used: &BTreeSet<Symbol>) -> Option<String> {
     let mut list = Vec::new();
-    for k in used.iter().filter_map(|s| argument.index(Quantity::from_symbol(*s))).filter(|k| *k < n) {
+    for k in
+        used.iter().filter_map(|s| argument.index_of_quantity(Quantity::from_symbol(*s))).filter(|k| *k < n)
+    {
         let length = list.len().max(k + 1);
         list.resize(length, "_".to_string());
         list[k] = format!("{}{k}", argument.argument_name());
@@ -256,7 +258,7 @@ fn argument_pattern(argument: Argument, n: usize, used: &BTreeSet<Symbol>) -> Op
     Some(list.join(", "))
 }
 
-fn write_result(out: &mut String, f: &Function, outputs: &Outputs<'_>, s: &Signature<'_>) {
+fn write_result(out: &mut String, f: &Function, outputs: &OutputTexts<'_>, s: &Signature<'_>) {
     match f.shape {
         Shape::Scalar => outputs.pieces.iter().for_each(|piece| out.push_str(&piece.text)),
         Shape::Array(_) => out.push_str(&outputs.array_of_outputs(0..outputs.pieces.len())),

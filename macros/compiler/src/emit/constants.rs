@@ -22,12 +22,12 @@ pub fn write_sizes_and_names(out: &mut String, i: &Interface<'_>) {
         ("INPUTS", &i.inputs, "every entry of `u`"),
     ];
     for (name, names, what) in lists {
-        write_names(out, name, names, what);
+        write_name_list_constant(out, name, names, what);
     }
 }
 
 /// Writes a list of names as a constant.
-fn write_names(out: &mut String, name: &str, names: &[String], what: &str) {
+fn write_name_list_constant(out: &mut String, name: &str, names: &[String], what: &str) {
     let _ =
         writeln!(out, "/// Name of {what}.\npub const {name}: [&'static str; {}] = {names:?};", names.len());
 }
@@ -40,7 +40,7 @@ pub fn write_constants(
     constants: &[AssociatedConstant],
 ) {
     write_sizes_and_names(out, i);
-    write_names(out, "FRAMES", &i.frames, "every frame");
+    write_name_list_constant(out, "FRAMES", &i.frames, "every frame");
     for AssociatedConstant { name, docs, item, list } in constants {
         let (n, list) = (list.len(), list.join(", "));
         let _ = writeln!(out, "/// {docs}\npub const {name}: [{item}; {n}] = [{list}];");

@@ -1,6 +1,6 @@
 //! Constraints of a mechanism, as data for code generation.
 
-use crate::mechanism::{Freedom, Model};
+use crate::mechanism::{DegreeOfFreedomCounts, Model};
 
 /// Scalar constraints of a mechanism, as data for code generation.
 #[derive(Clone, Debug, Default)]
@@ -14,7 +14,7 @@ pub struct Constraints {
     /// Names of rows of joints and constraints that are omitted because they depend on the others.
     pub redundant: Vec<String>,
     /// Numbers of independent coordinates and velocities of the constrained mechanism.
-    pub freedom: Freedom,
+    pub freedom: DegreeOfFreedomCounts,
     /// Indices of the constraints whose multipliers are normal forces of sliding contacts with friction.
     pub slipping: Vec<usize>,
     /// Indices of the constraints that determine coordinates that may have no inertia.
@@ -40,7 +40,7 @@ impl Constraints {
             holonomic: 1,
             groups: vec![0],
             redundant: Vec::new(),
-            freedom: Freedom::default(),
+            freedom: DegreeOfFreedomCounts::default(),
             slipping: slips.then_some(0).into_iter().collect(),
             determining: Vec::new(),
             overdetermined: false,

@@ -2,9 +2,9 @@
 //! assembly and projection.
 
 use super::signature::Signature;
-use crate::catalogue::{Argument, Id, Shape};
+use crate::catalogue::{Argument, GeneratedId, Shape};
 use crate::derive::Function;
-use crate::mechanism::Freedom;
+use crate::mechanism::DegreeOfFreedomCounts;
 use std::fmt::Write;
 
 pub use super::constraint_data::Constraints;
@@ -231,7 +231,7 @@ pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], 
             false => slipping_dynamics_source(c, s),
         },
     );
-    if functions.iter().any(|f| f.id == Id::MotionDerivatives) {
+    if functions.iter().any(|f| f.id == GeneratedId::MotionDerivatives) {
         write_constrained_derivatives(out, c, s);
     }
 }
@@ -326,7 +326,7 @@ fn slipping_dynamics_source(c: &Constraints, s: &Signature<'_>) -> String {
 fn write_constrained_derivatives(out: &mut String, c: &Constraints, s: &Signature<'_>) {
     let ConstraintSourceTexts { q, v, t, pass, .. } = ConstraintSourceTexts::new(c, s);
     let (scalar, nv, nc, nu, nh) = (s.scalar.scalar_name(), s.nv, c.names.len(), s.nu, c.holonomic);
-    let Freedom { coordinates: np, velocities: ns } = c.freedom;
+    let DegreeOfFreedomCounts { coordinates: np, velocities: ns } = c.freedom;
     let square = s.shape_type(Shape::Square(nv));
     let solve = if c.slipping.is_empty() {
         format!(
@@ -383,7 +383,7 @@ fn write_constrained_derivatives(out: &mut String, c: &Constraints, s: &Signatur
                 preferred,
             }}.independent()
         }}",
-        multipliers = multiplier_derivatives(c, s),
+        multipliers = multiplier_derivatives_source(c, s),
         u = s.vector_type(nu),
         nx = np + ns,
         motion = if c.slipping.is_empty() {
@@ -396,7 +396,7 @@ fn write_constrained_derivatives(out: &mut String, c: &Constraints, s: &Signatur
 }
 
 /// Returns the generated function for derivatives of multipliers, or an empty text if it is not available.
-fn multiplier_derivatives(c: &Constraints, s: &Signature<'_>) -> String {
+fn multiplier_derivatives_source(c: &Constraints, s: &Signature<'_>) -> String {
     if !are_constraints_differentiable(c) {
         return String::new();
     }

@@ -4,7 +4,7 @@ use super::interface::Interface;
 use super::signature::Signature;
 use crate::catalogue::{ContactCounts, FunctionNeed, Shape};
 use crate::expr::Symbol;
-use crate::expr::replace::{replace_all, symbols_in};
+use crate::expr::replace::{substitute_symbols_in_all, symbols_in};
 use crate::mechanism::{Contact, Model, Quantity};
 use std::fmt::Write;
 
@@ -43,7 +43,7 @@ impl UnilateralContact {
     /// Returns the unilateral contacts of a model.
     pub fn from_model(model: &Model<'_>) -> Vec<UnilateralContact> {
         let rates = model.contact_rates();
-        let at_rest = replace_all(&rates, &|symbol| {
+        let at_rest = substitute_symbols_in_all(&rates, &|symbol| {
             matches!(Quantity::from_symbol(symbol), Quantity::Velocity(_)).then(|| model.graph.zero())
         });
         let mut rows = rates.iter().zip(&at_rest);
@@ -208,7 +208,7 @@ pub fn write_derivatives(out: &mut String, i: &Interface<'_>, s: &Signature<'_>)
 }
 
 /// Writes the integrator hooks of mechanisms with contacts.
-pub fn write_steps(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
+pub fn write_contact_integrator_hooks(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     if i.contacts.is_empty() {
         return;
     }

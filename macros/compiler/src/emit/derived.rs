@@ -1,7 +1,7 @@
 //! Replacement for a struct that cannot be generated as the user's code expects it, because derives have
 //! processed its elements or its file cannot be read. The error is reported once.
 
-use crate::syntax::Shell;
+use crate::syntax::GeneratedStruct;
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
@@ -11,8 +11,8 @@ use quote::{format_ident, quote};
 /// them, hence no struct suits both. If a robot's file is missing, no sizes suit the code that uses the
 /// robot. For a type with an error in its arguments, however, rustc reports no further errors about fields
 /// and methods.
-pub fn struct_alias_with_error(shell: &Shell, error: &TokenStream) -> TokenStream {
-    let Shell { attributes, visibility, ident, parameters, tables, generics, .. } = shell;
+pub fn struct_alias_with_error(shell: &GeneratedStruct, error: &TokenStream) -> TokenStream {
+    let GeneratedStruct { attributes, visibility, ident, parameters, tables, generics, .. } = shell;
     let hidden = format_ident!("__{}Mistaken", ident.to_string().trim_start_matches("r#"));
     let (bounds, condition) = (generics.params.iter(), &generics.where_clause);
     let names = generics.type_params().map(|parameter| &parameter.ident);

@@ -3,7 +3,7 @@
 
 use super::interface::Interface;
 use super::signature::Signature;
-use crate::catalogue::{Argument, Id, Shape};
+use crate::catalogue::{Argument, GeneratedId, Shape};
 use crate::derive::Function;
 use crate::lower::Operand;
 use crate::mechanism::Chart;
@@ -11,7 +11,7 @@ use std::fmt::Write;
 
 /// Writes the derivatives of the functions on the configuration space and of the forces of inputs. Without
 /// `charts`, for a mechanism that failed to compile, the bodies never return.
-pub fn write_methods(
+pub fn write_configuration_and_input_derivatives(
     out: &mut String,
     charts: Option<&[Chart]>,
     functions: &[Function],
@@ -23,7 +23,7 @@ pub fn write_methods(
     }
     let direct = functions
         .iter()
-        .find(|f| f.id == Id::InputDerivatives)
+        .find(|f| f.id == GeneratedId::InputDerivatives)
         .and_then(|f| velocity_driven_by_each_input(f, s));
     let _ = writeln!(
         out,
@@ -35,7 +35,7 @@ pub fn write_methods(
     );
     let turned =
         charts.filter(|_| !i.facts.speeds).map_or("::core::option::Option::None".to_string(), |charts| {
-            let (first, end) = rotational_range(charts);
+            let (first, end) = rotational_velocity_range(charts);
             format!("::core::option::Option::Some(({first}, {end}))")
         });
     let _ = writeln!(
@@ -108,12 +108,12 @@ pub fn write_methods(
 /// the derivatives do not depend on the state.
 fn velocity_driven_by_each_input(f: &Function, s: &Signature<'_>) -> Option<Vec<usize>> {
     let by_inputs = f.program.outputs.get(s.nv + 2 * s.nv * s.nv..)?;
-    let is_constant = |o: &Operand, x: f64| *o == Operand::Const(x);
+    let is_constant_equal_to = |o: &Operand, x: f64| *o == Operand::Const(x);
     let columns = (0..s.nu).map(|k| {
         let column = by_inputs.get(k * s.nv..(k + 1) * s.nv)?;
-        let place = column.iter().position(|o| is_constant(o, 1.0))?;
+        let place = column.iter().position(|o| is_constant_equal_to(o, 1.0))?;
         let rest = column.iter().enumerate().filter(|(row, _)| *row != place);
-        rest.into_iter().all(|(_, o)| is_constant(o, 0.0)).then_some(place)
+        rest.into_iter().all(|(_, o)| is_constant_equal_to(o, 0.0)).then_some(place)
     });
     columns.collect()
 }
@@ -131,7 +131,7 @@ pub fn write_forward_second_derivatives(
         return;
     }
     if has_curved_configurations(i, s) {
-        write_rate_second_derivatives(out, charts, s);
+        write_displacement_rate_second_derivatives(out, charts, s);
     }
     let (square, pass) = (s.shape_type(Shape::Square(s.nv)), if s.time { "t, " } else { "" });
     let arguments = s.with_time_argument(&[Argument::Q, Argument::V, Argument::Tau, Argument::Factors(s.nv)]);
@@ -186,7 +186,7 @@ fn has_curved_configurations(i: &Interface<'_>, s: &Signature<'_>) -> bool {
 }
 
 /// Writes the second derivatives of the rate of displacements.
-fn write_rate_second_derivatives(out: &mut String, charts: Option<&[Chart]>, s: &Signature<'_>) {
+fn write_displacement_rate_second_derivatives(out: &mut String, charts: Option<&[Chart]>, s: &Signature<'_>) {
     let (v, square) = (s.vector_type(s.nv), s.shape_type(Shape::Square(s.nv)));
     let _ = writeln!(
         out,
@@ -204,7 +204,7 @@ fn write_rate_second_derivatives(out: &mut String, charts: Option<&[Chart]>, s: 
 }
 
 /// Writes `equation_second_derivatives`, the function of the trait `ConstrainedSecondDerivatives`.
-pub fn write_constrained_second_trait(out: &mut String, nc: usize, s: &Signature<'_>) {
+pub fn write_constrained_second_derivatives_trait(out: &mut String, nc: usize, s: &Signature<'_>) {
     let (scalar, nv) = (s.scalar.scalar_name(), s.nv);
     let (q, v, multipliers) = (s.vector_type(s.nq), s.vector_type(nv), s.vector_type(nc));
     let (t, pass) = (Argument::T.argument_name(), if s.time { "t, " } else { "" });
@@ -222,7 +222,7 @@ pub fn write_constrained_second_trait(out: &mut String, nc: usize, s: &Signature
 }
 
 /// Returns the half-open range that contains all velocities of ball and free joints.
-fn rotational_range(charts: &[Chart]) -> (usize, usize) {
+fn rotational_velocity_range(charts: &[Chart]) -> (usize, usize) {
     let velocities = charts.iter().filter_map(|chart| match *chart {
         Chart::Plain(..) => None,
         Chart::Ball(_, v) => Some((v.0, v.0 + 3)),
@@ -258,7 +258,7 @@ fn write_joint_derivative_blocks(out: &mut String, name: &str, of: &[&str], char
 }
 
 /// Writes the functions of the trait `SecondDerivatives`, which call the inherent functions.
-pub fn write_second_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
+pub fn write_second_derivatives_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     use Argument::{A, Q, Tau, U, V};
     if i.facts.constraints.is_some() {
         let _ = writeln!(
@@ -303,11 +303,11 @@ pub fn write_second_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>
 }
 
 /// Writes the functions of the trait `Derivatives`, which call the inherent functions.
-pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
+pub fn write_derivatives_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     use Argument::{A, Q, Tau, U, V};
     let (v, square) = (s.vector_type(s.nv), s.shape_type(Shape::Square(s.nv)));
     if i.facts.speeds {
-        super::speeds::write_derivatives(out, s);
+        super::speeds::write_configuration_space_derivatives(out, s);
     } else {
         let _ = writeln!(
             out,

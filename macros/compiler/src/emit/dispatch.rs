@@ -69,7 +69,7 @@ impl DispatchedBodies {
             out,
             "::linkwork::__private::dispatch::<{}, {}, _, _>(self, {names})\n}}",
             self.list.len(),
-            s.scalar.one()
+            s.scalar.single_lane_scalar_type()
         );
         let mut text = String::new();
         write_body(&mut text, f, s, true, BuildKind::Optimised);

@@ -3,12 +3,12 @@
 
 use super::interface::Interface;
 use super::{contacts, limits};
-use crate::catalogue::Id;
-use crate::derive::{Function, Output};
+use crate::catalogue::GeneratedId;
+use crate::derive::{DerivationOutput, Function};
 use crate::equations::PrintedEquations;
 use crate::expr::Symbol;
 use crate::lower::Program;
-use crate::mechanism::{Freedom, Quantity};
+use crate::mechanism::{DegreeOfFreedomCounts, Quantity};
 use crate::syntax::EquationsOption;
 use std::fmt::Write;
 
@@ -23,10 +23,10 @@ pub enum DocumentationPart {
 }
 
 /// Returns the documentation of the struct.
-pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> Vec<DocumentationPart> {
+pub fn struct_docs(interface: &Interface<'_>, output: &DerivationOutput) -> Vec<DocumentationPart> {
     let mut parts = Vec::new();
     let mut text = String::from("\n\n");
-    add_declaration(&mut text, interface);
+    add_user_declaration_source(&mut text, interface);
     text.push_str("# Mechanism\n\n");
     let _ = writeln!(
         text,
@@ -133,9 +133,9 @@ fn add_equation_section(
 /// execution time is estimated; empty if no function has any operation.
 pub fn operation_count_table(functions: &[Function]) -> String {
     let mut lines = String::new();
-    let mut row = |name: &str, program: &Program| {
+    let mut write_operation_count_row = |name: &str, program: &Program| {
         let c = program.counts;
-        let (held, branches) = (program.max_live(), program.branch_count());
+        let (held, branches) = (program.max_live(), program.possible_branch_count());
         let _ = writeln!(
             lines,
             "| {name} | {} | {} | {} | {} | {held} | {branches} |",
@@ -144,20 +144,23 @@ pub fn operation_count_table(functions: &[Function]) -> String {
     };
     for f in functions {
         let name = match f.id {
-            Id::PassiveForces => "passive forces, called by other functions".to_string(),
-            Id::PassiveDerivatives => "their derivatives, called by other functions".to_string(),
-            Id::ConstrainedDynamics => format!("`{}`", f.name.trim_start_matches('_')),
+            GeneratedId::PassiveForces => "passive forces, called by other functions".to_string(),
+            GeneratedId::PassiveDerivatives => "their derivatives, called by other functions".to_string(),
+            GeneratedId::ConstrainedDynamics => format!("`{}`", f.name.trim_start_matches('_')),
             _ if f.is_hidden() => continue,
             _ => format!("`{}`", f.name),
         };
         if f.program.counts.total_operations() + f.program.counts.calls > 0 {
-            row(&name, &f.program);
+            write_operation_count_row(&name, &f.program);
         }
         if let Some(program) = &f.program.simd {
-            row("its variant in lanes", program);
+            write_operation_count_row("its variant in lanes", program);
         }
         if let Some(loops) = &f.loops {
-            row("its variant with loops over links, which are not counted", &loops.program);
+            write_operation_count_row(
+                "its variant with loops over links, which are not counted",
+                &loops.program,
+            );
         }
     }
     if lines.is_empty() {
@@ -180,7 +183,7 @@ fn add_constraint_section(text: &mut String, i: &Interface<'_>) {
     if c.names.is_empty() {
         return;
     }
-    let Freedom { coordinates, velocities: speeds } = c.freedom;
+    let DegreeOfFreedomCounts { coordinates, velocities: speeds } = c.freedom;
     let _ = writeln!(
         text,
         "\n# Constraints\n\nThe coordinates are not independent: `NC` = {}, of which `NH` = {} are on \
@@ -209,7 +212,7 @@ fn add_constraint_section(text: &mut String, i: &Interface<'_>) {
 
 /// Adds the section on SIMD lanes: the functions that evaluate identical limbs or joints as lanes, and the
 /// coordinates of these limbs.
-fn add_lane_section(text: &mut String, i: &Interface<'_>, output: &Output) {
+fn add_lane_section(text: &mut String, i: &Interface<'_>, output: &DerivationOutput) {
     let shown = output.functions.iter().filter(|f| !f.name.starts_with("__"));
     let in_lanes: Vec<(&str, &Program)> =
         shown.filter_map(|f| Some((f.name.as_str(), f.program.simd.as_deref()?))).collect();
@@ -254,7 +257,7 @@ fn add_unit_table(text: &mut String, i: &Interface<'_>) {
         false => "| | name | unit | |\n| --- | --- | --- | --- |\n",
     });
     let mut said = Vec::new();
-    let mut row = |what: &str, name: &str, unit: &str| {
+    let mut write_unit_row = |what: &str, name: &str, unit: &str| {
         let _ = write!(text, "| {what} | `{name}` | {unit} |");
         if !i.shell.notes.is_empty() {
             // The note of a joint is printed once, for the first of its coordinates.
@@ -267,16 +270,20 @@ fn add_unit_table(text: &mut String, i: &Interface<'_>) {
     for (what, names, units) in lists {
         for (k, (name, unit)) in names.iter().zip(units).enumerate() {
             let what = if what.is_empty() { "parameter".to_string() } else { format!("`{what}[{k}]`") };
-            row(&what, name, unit);
+            write_unit_row(&what, name, unit);
         }
     }
     for (name, units) in i.shell.table_names().into_iter().zip(&i.units.tables) {
         if let Some((value, variables)) = units.split_last() {
-            row("table", &strip_raw_prefix(name), &format!("{value} over {}", variables.join(", ")));
+            write_unit_row(
+                "table",
+                &strip_raw_prefix(name),
+                &format!("{value} over {}", variables.join(", ")),
+            );
         }
     }
     for (name, unit) in i.outputs.iter().zip(&i.units.outputs) {
-        row("output", name, unit);
+        write_unit_row("output", name, unit);
     }
 }
 
@@ -298,7 +305,7 @@ pub fn output_function_documentation(i: &Interface<'_>, name: &str, what: &str) 
 const UNFOLDED: usize = 40;
 
 /// Adds the user's declaration as source text to the documentation.
-fn add_declaration(text: &mut String, i: &Interface<'_>) {
+fn add_user_declaration_source(text: &mut String, i: &Interface<'_>) {
     let Some(code) = &i.shell.declaration else { return };
     // Doc comments may contain code.
     let mut fence = "```".to_string();

@@ -31,7 +31,7 @@ pub fn struct_fields_for_file_values(i: &Interface<'_>) -> Vec<TokenStream> {
 /// Returns the scalar type of the fields.
 fn file_field_scalar_type(i: &Interface<'_>) -> Ident {
     let name = ScalarSpelling::new(i.scalar.clone(), Vec::new(), Vec::new());
-    format_ident!("{}", name.one())
+    format_ident!("{}", name.single_lane_scalar_type())
 }
 
 /// Writes the constructors from the values of the file, and the functions that get and set the inertial
@@ -61,7 +61,7 @@ pub fn write_methods(out: &mut String, i: &Interface<'_>, s: &ScalarSpelling) {
         .chain(values)
         .collect::<Vec<_>>()
         .join(", ");
-    let arguments = own.iter().map(|name| format!("{name}: {}", s.one()));
+    let arguments = own.iter().map(|name| format!("{name}: {}", s.single_lane_scalar_type()));
     let arguments: Vec<String> =
         arguments.chain(tables.iter().map(|(name, kind)| format!("{name}: {kind}"))).collect();
     let (constant, before) = match s.is_generic() {
@@ -88,7 +88,7 @@ pub fn write_methods(out: &mut String, i: &Interface<'_>, s: &ScalarSpelling) {
     let get: Vec<String> = links.iter().map(|field| format!("self.{}", field.ident)).collect();
     let set: Vec<String> =
         links.iter().enumerate().map(|(k, field)| format!("self.{} = links[{k}];", field.ident)).collect();
-    let kind = format!("[::linkwork::Inertial<{}>; {n}]", s.one());
+    let kind = format!("[::linkwork::Inertial<{}>; {n}]", s.single_lane_scalar_type());
     let _ = writeln!(
         out,
         "/// Name of every link whose mass properties are parameters.\npub const LINKS: [&'static str; {n}] \
@@ -116,14 +116,19 @@ pub fn write_methods(out: &mut String, i: &Interface<'_>, s: &ScalarSpelling) {
                 ::core::result::Result<(), ::linkwork::identification::PutBackError> {{
                 ::linkwork::identification::put_back(self, base)
             }}",
-            s.one(),
+            s.single_lane_scalar_type(),
             i.facts.base
         );
     }
 }
 
 /// Writes the trait `Identifiable`, which sets inertial parameters from base parameters.
-pub fn write_trait(out: &mut String, head: &ImplGenerics, i: &Interface<'_>, s: &ScalarSpelling) {
+pub fn write_identifiable_trait_impl(
+    out: &mut String,
+    head: &ImplGenerics,
+    i: &Interface<'_>,
+    s: &ScalarSpelling,
+) {
     if ![FunctionNeed::FileInertials, FunctionNeed::Asks(RequestOption::Regressor)]
         .iter()
         .all(|need| i.facts.meets_need(*need))
@@ -131,7 +136,7 @@ pub fn write_trait(out: &mut String, head: &ImplGenerics, i: &Interface<'_>, s: 
         return;
     }
     let ImplGenerics { generics, arguments, bounds } = head;
-    let (n, base, one) = (inertial_fields(i).len(), i.facts.base, s.one());
+    let (n, base, one) = (inertial_fields(i).len(), i.facts.base, s.single_lane_scalar_type());
     let _ = writeln!(
         out,
         "{ALLOW}impl{generics} ::linkwork::identification::Identifiable<{n}, {base}> for {}{arguments} \

@@ -6,7 +6,7 @@ use super::instruction::BuildKind;
 use super::interface::{ALLOW, ImplGenerics};
 use super::signature::Signature;
 use crate::catalogue::Argument;
-use crate::derive::{FrameSteps, Function, LinkRecursionPrograms};
+use crate::derive::{FrameRecursionPrograms, Function, LinkRecursionPrograms};
 use crate::lower::Program;
 use crate::mechanism::SuppliedQuantity;
 use std::fmt::Write;
@@ -20,12 +20,12 @@ pub fn write_frames(
     out: &mut String,
     name: &str,
     head: &ImplGenerics,
-    (links, frames): (&[LinkRecursionPrograms], &[FrameSteps]),
+    (links, frames): (&[LinkRecursionPrograms], &[FrameRecursionPrograms]),
     speeds: bool,
     s: &Signature<'_>,
 ) {
     let ImplGenerics { generics, arguments, bounds } = head;
-    let steps = write_steps(links, frames, s);
+    let steps = kinematic_step_methods(links, frames, s);
     let _ = writeln!(
         out,
         "const _: () = {{
@@ -69,25 +69,25 @@ struct FrameStepMethods {
 
 impl FrameStepMethods {
     /// Adds a method to both lists. `attribute` follows `inline` in its attribute, such as `(always)`.
-    fn add(&mut self, attribute: &str, signature: &str, body: &str) {
+    fn add_method(&mut self, attribute: &str, signature: &str, body: &str) {
         let _ = writeln!(self.declarations, "{signature};");
         let _ = writeln!(self.methods, "#[inline{attribute}]\n{signature} {{\n{body}}}");
     }
 }
 
 /// Returns the kinematic steps of all links and frames as private methods.
-fn write_steps(
+fn kinematic_step_methods(
     links: &[LinkRecursionPrograms],
-    frames: &[FrameSteps],
+    frames: &[FrameRecursionPrograms],
     s: &Signature<'_>,
 ) -> FrameStepMethods {
     let mut steps = FrameStepMethods::default();
-    let mut step = |name: String, arguments: Vec<Argument>, n: usize, program: &Program| {
+    let mut add_kinematic_step = |name: String, arguments: Vec<Argument>, n: usize, program: &Program| {
         let f = Function::hidden_part_function(name, arguments, n, program.clone());
         let mut body = String::new();
         write_body(&mut body, &f, s, false, BuildKind::Optimised);
         let signature = format!("fn {}({}) -> {}", f.name, s.parameter_list(&f.arguments), s.result_type(&f));
-        steps.add("", &signature, &body);
+        steps.add_method("", &signature, &body);
     };
     for (k, link) in links.iter().enumerate() {
         let arguments_with_parent = |arguments: &[Argument], given: Argument| {
@@ -95,7 +95,7 @@ fn write_steps(
             all.extend(link.parent.map(|_| given));
             all
         };
-        step(
+        add_kinematic_step(
             format!("__link{k}_placement"),
             arguments_with_parent(&[Argument::Q], PARENT),
             12,
@@ -105,18 +105,18 @@ fn write_steps(
             &[Argument::Q, Argument::V],
             Argument::Given("p", SuppliedQuantity::Parent, 6),
         );
-        step(format!("__link{k}_twist"), twist, 6, &link.twist);
+        add_kinematic_step(format!("__link{k}_twist"), twist, 6, &link.twist);
         let acceleration = arguments_with_parent(
             &[Argument::Q, Argument::V, Argument::A],
             Argument::Given("p", SuppliedQuantity::Parent, 12),
         );
-        step(format!("__link{k}_acceleration"), acceleration, 6, &link.acceleration);
+        add_kinematic_step(format!("__link{k}_acceleration"), acceleration, 6, &link.acceleration);
         let mut columns = if link.driven { s.with_time_argument(&[Argument::Q]) } else { Vec::new() };
         columns.extend([
             Argument::Given("p", SuppliedQuantity::Parent, 12),
             Argument::Given("o", SuppliedQuantity::Origin, 3),
         ]);
-        step(format!("__link{k}_columns"), columns, 6 * link.velocities.len(), &link.columns);
+        add_kinematic_step(format!("__link{k}_columns"), columns, 6 * link.velocities.len(), &link.columns);
     }
     for (k, frame) in frames.iter().enumerate() {
         let link_argument = |n: usize| {
@@ -127,10 +127,10 @@ fn write_steps(
                 .collect::<Vec<_>>()
         };
         if !frame.is_link {
-            step(format!("__frame{k}_placement"), link_argument(12), 12, &frame.placement);
+            add_kinematic_step(format!("__frame{k}_placement"), link_argument(12), 12, &frame.placement);
         }
-        step(format!("__frame{k}_twist"), link_argument(18), 6, &frame.twist);
-        step(format!("__frame{k}_acceleration"), link_argument(24), 6, &frame.acceleration);
+        add_kinematic_step(format!("__frame{k}_twist"), link_argument(18), 6, &frame.twist);
+        add_kinematic_step(format!("__frame{k}_acceleration"), link_argument(24), 6, &frame.acceleration);
     }
     for (k, link) in links.iter().enumerate() {
         add_path_kinematics_methods(&mut steps, k, link, s);
@@ -161,7 +161,7 @@ fn write_link_placement(out: &mut String, k: usize, link: &LinkRecursionPrograms
     let _ = writeln!(out, "let x{k} = self.__link{k}_placement({t}q{parent});");
 }
 
-fn frame_placement(k: usize, frame: &FrameSteps) -> String {
+fn frame_placement_expression(k: usize, frame: &FrameRecursionPrograms) -> String {
     match frame.link {
         Some(link) if frame.is_link => format!("x{link}"),
         Some(link) => format!("self.__frame{k}_placement(&x{link})"),
@@ -174,7 +174,7 @@ fn frame_placement(k: usize, frame: &FrameSteps) -> String {
 fn write_all_placements(
     out: &mut String,
     links: &[LinkRecursionPrograms],
-    frames: &[FrameSteps],
+    frames: &[FrameRecursionPrograms],
     s: &Signature<'_>,
 ) {
     for (k, link) in links.iter().enumerate() {
@@ -183,7 +183,9 @@ fn write_all_placements(
     let list: Vec<String> = frames
         .iter()
         .enumerate()
-        .map(|(k, frame)| format!("::linkwork::__private::placement(&{})", frame_placement(k, frame)))
+        .map(|(k, frame)| {
+            format!("::linkwork::__private::placement(&{})", frame_placement_expression(k, frame))
+        })
         .collect();
     let _ = writeln!(out, "[{}]", list.join(",\n"));
 }
@@ -192,7 +194,7 @@ fn write_all_placements(
 fn write_frame_impl(
     out: &mut String,
     k: usize,
-    frame: &FrameSteps,
+    frame: &FrameRecursionPrograms,
     links: &[LinkRecursionPrograms],
     speeds: bool,
     s: &Signature<'_>,
@@ -210,7 +212,7 @@ fn write_frame_impl(
     let t = time_argument_prefix(s);
     write_frame_method(out, "placement", &[Argument::Q], &format!("[{scalar}; 12]"));
     write_frame_link_binding(out, frame.link, s);
-    let _ = writeln!(out, "{}\n}}", frame_placement(k, frame));
+    let _ = writeln!(out, "{}\n}}", frame_placement_expression(k, frame));
 
     write_frame_method(out, "twist", &[Argument::Q, Argument::V], &format!("[{scalar}; 6]"));
     out.push_str(rates);
@@ -253,17 +255,21 @@ fn add_path_kinematics_methods(
 ) {
     use Argument::{A, Q, V};
     let (scalar, t) = (s.scalar.scalar_name(), time_argument_prefix(s));
-    let mut method = |name: &str, arguments: &[Argument], n: usize, body: &str| {
+    let mut add_path_method = |name: &str, arguments: &[Argument], n: usize, body: &str| {
         let parameters = s.parameter_list(&s.with_time_argument(arguments));
-        steps.add("(always)", &format!("fn __link{k}_path_{name}({parameters}) -> [{scalar}; {n}]"), body);
+        steps.add_method(
+            "(always)",
+            &format!("fn __link{k}_path_{name}({parameters}) -> [{scalar}; {n}]"),
+            body,
+        );
     };
     let parent_path_call_argument = |name: &str, state: &str| {
         link.parent.map_or(String::new(), |p| format!(", &self.__link{p}_path_{name}({t}{state})"))
     };
     let placement = format!("self.__link{k}_placement({t}q{})", parent_path_call_argument("placement", "q"));
-    method("placement", &[Q], 12, &placement);
+    add_path_method("placement", &[Q], 12, &placement);
     let twist = format!("self.__link{k}_twist({t}q, v{})", parent_path_call_argument("twist", "q, v"));
-    method("twist", &[Q, V], 6, &twist);
+    add_path_method("twist", &[Q, V], 6, &twist);
     let motion = match link.parent {
         Some(p) => format!(
             "let p = self.__link{p}_path_motion({t}q, v, a);\n\
@@ -275,13 +281,13 @@ fn add_path_kinematics_methods(
              v, a))"
         ),
     };
-    method("motion", &[Q, V, A], 12, &motion);
+    add_path_method("motion", &[Q, V, A], 12, &motion);
 }
 
 fn write_jacobian(
     out: &mut String,
     k: usize,
-    frame: &FrameSteps,
+    frame: &FrameRecursionPrograms,
     links: usize,
     speeds: bool,
     s: &Signature<'_>,
@@ -331,7 +337,7 @@ fn add_path_jacobian_methods(
         Some(p) => (format!("self.__link{p}_path_placements({t}q, x);\n"), format!(", &x[{p}]")),
         None => Default::default(),
     };
-    steps.add(
+    steps.add_method(
         "(always)",
         &format!("fn __link{k}_path_placements({state}, x: &mut [[{scalar}; 12]; {count}])"),
         &format!("{before}x[{k}] = self.__link{k}_placement({t}q{parent});\n"),
@@ -350,7 +356,7 @@ fn add_path_jacobian_methods(
          [[{scalar}; 6]; {}])",
         s.nv
     );
-    steps.add("(always)", &signature, &body);
+    steps.add_method("(always)", &signature, &body);
 }
 
 /// Writes the columns of a link. Coupled coordinates share a column: their contributions are added.
@@ -363,7 +369,7 @@ fn write_jacobian_columns(
 ) {
     let state = if link.driven { format!("{}q, ", time_argument_prefix(s)) } else { String::new() };
     let call = format!("self.__link{k}_columns({state}&x[{k}], o)");
-    let mut write = |column: usize, value: &str, out: &mut String| {
+    let mut write_jacobian_column = |column: usize, value: &str, out: &mut String| {
         let value = match std::mem::replace(&mut written[column], true) {
             false => value.to_string(),
             true => format!("::linkwork::__private::sum(&columns[{column}], &{value})"),
@@ -371,7 +377,7 @@ fn write_jacobian_columns(
         let _ = writeln!(out, "columns[{column}] = {value};");
     };
     if let [column] = link.velocities[..] {
-        write(column, &call, out);
+        write_jacobian_column(column, &call, out);
         return;
     }
     let variable_names_of_column =
@@ -379,7 +385,7 @@ fn write_jacobian_columns(
     let all: Vec<String> = (0..link.velocities.len()).map(variable_names_of_column).collect();
     let _ = writeln!(out, "let [{}] = {call};", all.join(", "));
     for (column, entries) in link.velocities.iter().zip(&all) {
-        write(*column, &format!("[{entries}]"), out);
+        write_jacobian_column(*column, &format!("[{entries}]"), out);
     }
 }
 

@@ -36,7 +36,7 @@ pub fn write_impls(
         );
     };
     begin_impl_block(out, "Mechanism");
-    write_trait(out, i, s);
+    write_mechanism_trait_items(out, i, s);
     out.push_str("}\n");
     let _ = writeln!(
         out,
@@ -54,18 +54,18 @@ pub fn write_impls(
     }
     if i.facts.requests.derivatives {
         begin_impl_block(out, "Derivatives");
-        differentiable::write_trait(out, i, s);
+        differentiable::write_derivatives_trait(out, i, s);
         constraints::write_visit_constraints(out, &i.constraints, s);
         out.push_str("}\n");
     }
     if differentiable::has_dynamics_second_derivatives(i) {
         begin_impl_block(out, "SecondDerivatives");
-        differentiable::write_second_trait(out, i, s);
+        differentiable::write_second_derivatives_trait(out, i, s);
         out.push_str("}\n");
     }
     if i.facts.requests.batch {
         begin_impl_block(out, "Batch");
-        lanes::write_trait(out, i, s);
+        lanes::write_batch_trait_functions(out, i, s);
         out.push_str("}\n");
     }
     if !i.contacts.is_empty() {
@@ -134,14 +134,14 @@ fn write_constraint_trait_impls(
     }
     if differentiable::has_dynamics_second_derivatives(i) {
         write_trait_impl_head(head, out, name, "ConstrainedSecondDerivatives", s, counts);
-        differentiable::write_constrained_second_trait(out, i.constraints.names.len(), s);
+        differentiable::write_constrained_second_derivatives_trait(out, i.constraints.names.len(), s);
         out.push_str("}\n");
     }
 }
 
 /// Writes the items of the trait `Mechanism`. Its functions call the inherent functions, which take only the
 /// arguments that they need.
-fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
+fn write_mechanism_trait_items(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     let _ = writeln!(out, "type Scalar = {};", s.scalar.scalar_name());
     for (name, n) in [("CONFIGURATION", s.nq), ("VELOCITIES", s.nv), ("INPUTS", s.nu)] {
         let _ = writeln!(out, "const {name}: [&'static str; {n}] = Self::{name};");
@@ -173,7 +173,7 @@ fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
         #[inline]\nfn difference(&self, from: &{q}, to: &{q}) -> {v} {{ Self::difference(self, from, to) }}"
     );
     if i.facts.speeds {
-        super::speeds::write_trait(out, s);
+        super::speeds::write_mechanism_trait_overrides(out, s);
     } else {
         let _ = writeln!(
             out,
@@ -196,5 +196,5 @@ fn write_integrator_hooks(out: &mut String, i: &Interface<'_>, s: &Signature<'_>
     if i.facts.requests.derivatives && i.constraints.slipping.is_empty() {
         differentiable::write_acceleration_derivative_hook(out, s);
     }
-    contacts::write_steps(out, i, s);
+    contacts::write_contact_integrator_hooks(out, i, s);
 }

@@ -1,6 +1,6 @@
 //! Conversion of instructions and their operands to Rust expressions.
 
-use super::pieces::{Piece, PrecedenceLevel, Statement};
+use super::pieces::{ExpressionPiece, PrecedenceLevel, Statement};
 use super::scalar::ScalarSpelling;
 use crate::catalogue::Argument;
 use crate::expr::{Lookup, Symbol};
@@ -35,7 +35,7 @@ pub struct BodyWriter<'a> {
     /// Statements that have been written so far.
     pub statements: Vec<Statement>,
     /// Text of each value that is not bound to a name.
-    pub pieces: Vec<Option<Piece>>,
+    pub pieces: Vec<Option<ExpressionPiece>>,
     /// Number of statements up to and including sines and cosines.
     pub head: usize,
     /// Arguments on which the angles of the sines and cosines depend.
@@ -63,7 +63,7 @@ impl BodyWriter<'_> {
     }
 
     /// Returns an operand of an operation on `lanes` lanes; a scalar is broadcast to all lanes.
-    fn broadcast_operand(&mut self, o: Operand, lanes: usize) -> Piece {
+    fn broadcast_operand(&mut self, o: Operand, lanes: usize) -> ExpressionPiece {
         let own = self.lane_count(o);
         let piece = self.operand_text(o);
         if own == lanes {
@@ -73,13 +73,13 @@ impl BodyWriter<'_> {
             Some(splat) => format!("{splat}({})", piece.text),
             None => format!("Ops::splat::<_, {lanes}>({})", piece.text),
         };
-        Piece { text, needs: piece.needs, level: PrecedenceLevel::Whole }
+        ExpressionPiece { text, needs: piece.needs, level: PrecedenceLevel::Whole }
     }
 
     /// Returns the text of an operand. The text of an unbound value is taken out of `pieces`.
-    pub fn operand_text(&mut self, o: Operand) -> Piece {
+    pub fn operand_text(&mut self, o: Operand) -> ExpressionPiece {
         let piece_without_dependencies =
-            |text| Piece { text, needs: Vec::new(), level: PrecedenceLevel::Whole };
+            |text| ExpressionPiece { text, needs: Vec::new(), level: PrecedenceLevel::Whole };
         match o {
             Operand::Const(c) => piece_without_dependencies(self.constant_text(c)),
             Operand::Symbol(s) => piece_without_dependencies(self.input_symbol_text(s)),
@@ -90,15 +90,16 @@ impl BodyWriter<'_> {
             }
             Operand::Gather(k) => {
                 let gather = &self.program.gathers[k];
-                let is_input =
-                    |a: &Argument| gather.iter().any(|s| a.index(Quantity::from_symbol(*s)).is_some());
+                let is_input = |a: &Argument| {
+                    gather.iter().any(|s| a.index_of_quantity(Quantity::from_symbol(*s)).is_some())
+                };
                 // Gathers of arguments are bound to names; gathers of parameters are not.
                 piece_without_dependencies(match self.arguments.iter().any(is_input) {
                     true => format!("lanes{k}"),
                     false => self.gathered_vector(gather),
                 })
             }
-            Operand::Value(k) => self.pieces[k].take().unwrap_or_else(|| Piece {
+            Operand::Value(k) => self.pieces[k].take().unwrap_or_else(|| ExpressionPiece {
                 text: format!("t{k}"),
                 needs: vec![k],
                 level: PrecedenceLevel::Whole,
@@ -107,10 +108,10 @@ impl BodyWriter<'_> {
     }
 
     /// Returns the text of an output. For several states, a vector register is converted to lanes.
-    pub fn output_text(&mut self, o: Operand) -> Piece {
+    pub fn output_text(&mut self, o: Operand) -> ExpressionPiece {
         let piece = self.operand_text(o);
         match self.scalar.uses_batch_lanes() {
-            true => Piece {
+            true => ExpressionPiece {
                 text: format!("{}.lanes()", parenthesised_below_level(&piece, PrecedenceLevel::Whole)),
                 level: PrecedenceLevel::Whole,
                 ..piece
@@ -132,23 +133,23 @@ impl BodyWriter<'_> {
             return if self.scalar.uses_batch_lanes() { "time" } else { "t" }.to_string();
         }
         match quantity {
-            Quantity::Parameter(k) => return self.scalar.parameter_value(k),
+            Quantity::Parameter(k) => return self.scalar.parameter_value_expression(k),
             Quantity::Prepared(k) => return self.scalar.broadcast_number(format!("self.numbers[{k}]")),
             _ => {}
         }
         self.arguments
             .iter()
-            .find_map(|a| a.index(quantity).map(|k| format!("{}{k}", a.argument_name())))
+            .find_map(|a| a.index_of_quantity(quantity).map(|k| format!("{}{k}", a.argument_name())))
             .unwrap_or_else(|| "missing".to_string())
     }
 
     /// Returns the text of an instruction whose result has `lanes` lanes.
-    pub fn instruction_text(&mut self, op: Op, lanes: usize) -> Piece {
+    pub fn instruction_text(&mut self, op: Op, lanes: usize) -> ExpressionPiece {
         match op {
             Op::Neg(a) => {
                 let a = self.operand_text(a);
                 let text = format!("-{}", parenthesised_below_level(&a, PrecedenceLevel::Whole));
-                Piece { text, needs: a.needs, level: PrecedenceLevel::Product }
+                ExpressionPiece { text, needs: a.needs, level: PrecedenceLevel::Product }
             }
             Op::Add(a, b) => {
                 self.infix_operation([a, b], "+", lanes, [PrecedenceLevel::Sum, PrecedenceLevel::Product])
@@ -190,14 +191,14 @@ impl BodyWriter<'_> {
                     1 => format!("Ops::lanes([{}, {}])", a.text, b.text),
                     _ => format!("Ops::join::<_, {n}, {}>({}, {})", 2 * n, a.text, b.text),
                 };
-                Piece { text, needs: [a.needs, b.needs].concat(), level: PrecedenceLevel::Whole }
+                ExpressionPiece { text, needs: [a.needs, b.needs].concat(), level: PrecedenceLevel::Whole }
             }
         }
     }
 
-    fn suffix_operation(&mut self, a: Operand, suffix: &str) -> Piece {
+    fn suffix_operation(&mut self, a: Operand, suffix: &str) -> ExpressionPiece {
         let a = self.operand_text(a);
-        Piece {
+        ExpressionPiece {
             text: format!("{}{suffix}", parenthesised_below_level(&a, PrecedenceLevel::Whole)),
             needs: a.needs,
             level: PrecedenceLevel::Whole,
@@ -210,7 +211,7 @@ impl BodyWriter<'_> {
         op: &str,
         lanes: usize,
         [level, right]: [PrecedenceLevel; 2],
-    ) -> Piece {
+    ) -> ExpressionPiece {
         if op == "*"
             && let Some(scaled) = self.scalar_and_vector_factors([a, b], lanes)
         {
@@ -222,26 +223,26 @@ impl BodyWriter<'_> {
             format!("{} {op} {}", parenthesised_below_level(&a, level), parenthesised_below_level(&b, right));
         let mut needs = a.needs;
         needs.extend(b.needs);
-        Piece { text, needs, level }
+        ExpressionPiece { text, needs, level }
     }
 
     /// Returns `a * b + c` or `a * b - c`.
-    fn product_plus_or_minus(&mut self, product: [Operand; 2], op: &str, c: Operand) -> Piece {
+    fn product_plus_or_minus(&mut self, product: [Operand; 2], op: &str, c: Operand) -> ExpressionPiece {
         let product =
             self.infix_operation(product, "*", 1, [PrecedenceLevel::Product, PrecedenceLevel::Whole]);
         let c = self.operand_text(c);
         let text =
             format!("{} {op} {}", product.text, parenthesised_below_level(&c, PrecedenceLevel::Product));
-        Piece { text, needs: [product.needs, c.needs].concat(), level: PrecedenceLevel::Sum }
+        ExpressionPiece { text, needs: [product.needs, c.needs].concat(), level: PrecedenceLevel::Sum }
     }
 
     /// Returns the expression `c - a * b`.
-    fn difference_with_product(&mut self, c: Operand, product: [Operand; 2]) -> Piece {
+    fn difference_with_product(&mut self, c: Operand, product: [Operand; 2]) -> ExpressionPiece {
         let c = self.operand_text(c);
         let product =
             self.infix_operation(product, "*", 1, [PrecedenceLevel::Product, PrecedenceLevel::Whole]);
         let text = format!("{} - {}", parenthesised_below_level(&c, PrecedenceLevel::Sum), product.text);
-        Piece { text, needs: [c.needs, product.needs].concat(), level: PrecedenceLevel::Sum }
+        ExpressionPiece { text, needs: [c.needs, product.needs].concat(), level: PrecedenceLevel::Sum }
     }
 
     /// Returns a fused operation. The product of a scalar and a vector has an operation of its own, which
@@ -251,7 +252,7 @@ impl BodyWriter<'_> {
         [function, scaled]: [&'static str; 2],
         [a, b, c]: [Operand; 3],
         lanes: usize,
-    ) -> Piece {
+    ) -> ExpressionPiece {
         let Some(factors) = self.scalar_and_vector_factors([a, b], lanes) else {
             let name =
                 self.bind_operation_name(function, lanes).unwrap_or_else(|| format!("Ops::{function}"));
@@ -264,7 +265,11 @@ impl BodyWriter<'_> {
 
     /// Returns the factors of a product of a scalar and a vector, the scalar first; `None` for other
     /// products.
-    fn scalar_and_vector_factors(&mut self, [a, b]: [Operand; 2], lanes: usize) -> Option<Vec<Piece>> {
+    fn scalar_and_vector_factors(
+        &mut self,
+        [a, b]: [Operand; 2],
+        lanes: usize,
+    ) -> Option<Vec<ExpressionPiece>> {
         let [x, v] = match (self.lane_count(a), self.lane_count(b)) {
             _ if lanes == 1 => return None,
             (1, own) if own == lanes => [a, b],
@@ -284,7 +289,7 @@ impl BodyWriter<'_> {
     /// Writes the bindings of named operations. With them rustc resolves the generic arguments and checks the
     /// bounds of an operation once instead of at every call.
     pub fn write_named_operations(&self, out: &mut String) {
-        let one = self.scalar.one();
+        let one = self.scalar.single_lane_scalar_type();
         for (function, lanes) in self.named.iter().flatten() {
             let (name, width) = match (lanes, self.scalar.uses_batch_lanes()) {
                 (1, false) => (function.to_string(), None),
@@ -302,12 +307,12 @@ impl BodyWriter<'_> {
         }
     }
 
-    fn call_text(&mut self, function: &str, arguments: &[Operand], lanes: usize) -> Piece {
+    fn call_text(&mut self, function: &str, arguments: &[Operand], lanes: usize) -> ExpressionPiece {
         self.call_with_broadcast_arguments(&format!("Ops::{function}"), arguments, lanes)
     }
 
     /// Returns the expression of a table's value, or of one of its derivatives.
-    fn table_lookup_text(&mut self, lookup: Lookup, x: [Operand; 3], lanes: usize) -> Piece {
+    fn table_lookup_text(&mut self, lookup: Lookup, x: [Operand; 3], lanes: usize) -> ExpressionPiece {
         let (field, orders) =
             (self.scalar.table_field_name(lookup.table_index()).to_string(), lookup.derivative_orders());
         let list = self.call_with_broadcast_arguments(
@@ -316,7 +321,7 @@ impl BodyWriter<'_> {
             lanes,
         );
         let inner = list.text.strip_prefix('(').and_then(|text| text.strip_suffix(')')).unwrap_or_default();
-        Piece { text: format!("Ops::tabulated(&self.{field}, [{inner}], {orders:?})"), ..list }
+        ExpressionPiece { text: format!("Ops::tabulated(&self.{field}, [{inner}], {orders:?})"), ..list }
     }
 
     fn call_with_broadcast_arguments(
@@ -324,21 +329,29 @@ impl BodyWriter<'_> {
         function: &str,
         arguments: &[Operand],
         lanes: usize,
-    ) -> Piece {
+    ) -> ExpressionPiece {
         let list = arguments.iter().map(|a| self.broadcast_operand(*a, lanes)).collect();
         self.call_with_piece_arguments(function, list)
     }
 
-    fn call_with_piece_arguments(&mut self, function: &str, arguments: Vec<Piece>) -> Piece {
+    fn call_with_piece_arguments(
+        &mut self,
+        function: &str,
+        arguments: Vec<ExpressionPiece>,
+    ) -> ExpressionPiece {
         let (mut needs, mut list) = (Vec::new(), Vec::new());
         for piece in arguments {
             needs.extend(piece.needs);
             list.push(piece.text);
         }
-        Piece { text: format!("{function}({})", list.join(", ")), needs, level: PrecedenceLevel::Whole }
+        ExpressionPiece {
+            text: format!("{function}({})", list.join(", ")),
+            needs,
+            level: PrecedenceLevel::Whole,
+        }
     }
 }
 
-fn parenthesised_below_level(piece: &Piece, level: PrecedenceLevel) -> String {
+fn parenthesised_below_level(piece: &ExpressionPiece, level: PrecedenceLevel) -> String {
     if piece.level < level { format!("({})", piece.text) } else { piece.text.clone() }
 }

@@ -7,14 +7,14 @@ use super::polytopes::ContactPolytopes;
 use super::signature::Signature;
 use super::validate::ParameterCondition;
 use crate::catalogue::{Argument, Facts, Row};
-use crate::mechanism::{Diagram, Units};
-use crate::syntax::{ScalarType, Shell};
+use crate::mechanism::{FreeBodyDiagram, Units};
+use crate::syntax::{GeneratedStruct, ScalarType};
 use quote::ToTokens;
 
 /// Names and types of the public interface of a mechanism.
 pub struct Interface<'a> {
     /// Declaration of the mechanism's struct.
-    pub shell: &'a Shell,
+    pub shell: &'a GeneratedStruct,
     /// Scalar type of the mechanism.
     pub scalar: ScalarType,
     /// Name of every entry of `q`.
@@ -42,7 +42,7 @@ pub struct Interface<'a> {
     /// Names of the mechanism's outputs.
     pub outputs: Vec<String>,
     /// Free-body diagrams, with the names of their outputs.
-    pub diagrams: Vec<(String, Diagram)>,
+    pub diagrams: Vec<(String, FreeBodyDiagram)>,
     /// Units of coordinates, inputs, outputs, constraints and parameters.
     pub units: Units,
     /// Paths of imported files, whose changes cause a new compilation of the crate.
@@ -93,7 +93,7 @@ impl ImplGenerics {
         if s.scalar.is_generic() {
             let start = if bounds.is_empty() { "where" } else { bounds.trim_end().trim_end_matches(',') };
             let comma = if bounds.is_empty() { "" } else { "," };
-            bounds = format!("{start}{comma} {}: ::linkwork::Real", s.scalar.one());
+            bounds = format!("{start}{comma} {}: ::linkwork::Real", s.scalar.single_lane_scalar_type());
         }
         ImplGenerics { generics: spell_tokens(&impl_generics), arguments: spell_tokens(&ty_generics), bounds }
     }

@@ -9,15 +9,15 @@ use super::frames::{write_frames, write_trait as write_frames_by_number};
 use super::function::write_function;
 use super::implementations::write_impls;
 use super::interface::{ALLOW, ImplGenerics, Interface};
-use super::manifold::{write_manifold, write_transport};
+use super::manifold::{write_manifold, write_velocity_transport_functions};
 use super::prepared::{PreparedProgram, write_prepared_struct_and_functions};
 use super::scalar::ScalarSpelling;
 use super::signature::Signature;
 use super::{constraints, contacts};
 use super::{file, lanes, measurements, reactions, sensitivities, states, validate};
-use crate::derive::{AssociatedConstant, Function, Output};
+use crate::derive::{AssociatedConstant, DerivationOutput, Function};
 use crate::equations::PrintedEquations;
-use crate::syntax::Shell;
+use crate::syntax::GeneratedStruct;
 use proc_macro2::TokenStream;
 use quote::{ToTokens, quote};
 use std::fmt::Write;
@@ -50,7 +50,7 @@ const REPRODUCIBLE: &str = "const _: () = {
 ";
 
 /// Returns the generated code of a mechanism without errors.
-pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> GeneratedCode {
+pub fn emit_mechanism(interface: &Interface<'_>, output: &DerivationOutput) -> GeneratedCode {
     let spelling = scalar_spelling(interface);
     let s = common_function_signature(interface, &spelling);
     let mut methods = String::new();
@@ -72,14 +72,20 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> GeneratedCo
     }
     write_manifold(&mut methods, Some(&output.charts), interface.facts.speeds, &s);
     if !interface.contacts.is_empty() {
-        write_transport(&mut methods, Some(&output.charts), interface.facts.speeds, &s);
+        write_velocity_transport_functions(&mut methods, Some(&output.charts), interface.facts.speeds, &s);
     }
-    differentiable::write_methods(&mut methods, Some(&output.charts), &output.functions, interface, &s);
+    differentiable::write_configuration_and_input_derivatives(
+        &mut methods,
+        Some(&output.charts),
+        &output.functions,
+        interface,
+        &s,
+    );
     differentiable::write_forward_second_derivatives(&mut methods, Some(&output.charts), interface, &s);
     lanes::write_methods(&mut methods, &mut bodies, interface, &output.functions, Some(&output.charts), &s);
     // A parameter that drops out of the equations must not cause a warning about an unused field.
     let fields: Vec<String> = (0..interface.shell.parameter_access_paths().len())
-        .map(|k| format!("&self.{}", spelling.parameter_field(k)))
+        .map(|k| format!("&self.{}", spelling.parameter_field_name(k)))
         .collect();
     let fields: Vec<String> = fields
         .into_iter()
@@ -161,9 +167,9 @@ pub fn emit_error_stubs(
     }
     write_manifold(&mut methods, None, interface.facts.speeds, &s);
     if !interface.contacts.is_empty() {
-        write_transport(&mut methods, None, interface.facts.speeds, &s);
+        write_velocity_transport_functions(&mut methods, None, interface.facts.speeds, &s);
     }
-    differentiable::write_methods(&mut methods, None, functions, interface, &s);
+    differentiable::write_configuration_and_input_derivatives(&mut methods, None, functions, interface, &s);
     differentiable::write_forward_second_derivatives(&mut methods, None, interface, &s);
     lanes::write_methods(&mut methods, &mut DispatchedBodies::new(false), interface, functions, None, &s);
     validate::write_validate_method(&mut methods, interface, true);
@@ -280,7 +286,7 @@ fn runtime_alias_name(ident: &syn::Ident) -> String {
 }
 
 /// Returns the path of the runtime as tokens.
-pub(super) fn runtime_path(shell: &Shell) -> TokenStream {
+pub(super) fn runtime_path(shell: &GeneratedStruct) -> TokenStream {
     match shell.runtime {
         None => quote!(::linkwork),
         Some(_) => quote::format_ident!("{}", runtime_alias_name(&shell.ident)).to_token_stream(),
@@ -288,7 +294,7 @@ pub(super) fn runtime_path(shell: &Shell) -> TokenStream {
 }
 
 /// Returns the text with the path of the runtime replaced by its alias, if the attribute contains a path.
-fn replace_runtime_path(text: String, shell: &Shell) -> String {
+fn replace_runtime_path(text: String, shell: &GeneratedStruct) -> String {
     match shell.runtime {
         None => text,
         Some(_) => text.replace("::linkwork::", &format!("{}::", runtime_alias_name(&shell.ident))),
@@ -303,7 +309,9 @@ fn assemble_generated_code(
     frames: usize,
     docs: &[DocumentationPart],
 ) -> GeneratedCode {
-    let Shell { attributes, visibility, ident, parameters, tables, elements, runtime: path, .. } = i.shell;
+    let GeneratedStruct {
+        attributes, visibility, ident, parameters, tables, elements, runtime: path, ..
+    } = i.shell;
     let (.., struct_where) = i.shell.generics.split_for_impl();
     let struct_generics = &i.shell.generics.params;
     let struct_generics = if struct_generics.is_empty() { quote!() } else { quote!(<#struct_generics>) };
@@ -349,7 +357,7 @@ fn assemble_generated_code(
     let head = ImplGenerics::new(i, s);
     let mut text = String::new();
     write_impls(&head, &mut text, &i.shell.ident.to_string(), methods, i, s);
-    file::write_trait(&mut text, &head, i, s.scalar);
+    file::write_identifiable_trait_impl(&mut text, &head, i, s.scalar);
     let _ = writeln!(
         text,
         "{ALLOW}impl{} ::linkwork::Frames<{}, {}> for {}{} {} {{",

@@ -6,7 +6,7 @@ use super::function::write_function;
 use super::interface::{Interface, inherent_function_arguments};
 use super::manifold::write_manifold;
 use super::signature::{Signature, matrix_argument_names};
-use crate::catalogue::{self, Argument, Id, Shape};
+use crate::catalogue::{self, Argument, GeneratedId, Shape};
 use crate::derive::Function;
 use crate::mechanism::Chart;
 use std::fmt::Write;
@@ -24,12 +24,14 @@ pub fn write_methods(
     if !i.facts.requests.batch {
         return;
     }
-    let in_lanes = s.scalar.in_lanes();
+    let in_lanes = s.scalar.spelling_in_lanes();
     let lanes = Signature { scalar: &in_lanes, ..*s };
     let is_batched = |f: &&Function| match f.id {
-        Id::ConstrainedDynamics => !i.constraints.overdetermined,
+        GeneratedId::ConstrainedDynamics => !i.constraints.overdetermined,
         // Hidden functions that other functions call.
-        Id::AccelerationsAndInverse | Id::PassiveForces | Id::PassiveDerivatives => true,
+        GeneratedId::AccelerationsAndInverse
+        | GeneratedId::PassiveForces
+        | GeneratedId::PassiveDerivatives => true,
         _ => !f.is_hidden() && !f.arguments.is_empty(),
     };
     for f in functions.iter().filter(is_batched) {
@@ -173,8 +175,8 @@ fn write_constrained_dynamics_lanes(out: &mut String, i: &Interface<'_>, s: &Sig
 
 /// Writes the functions of the trait `Batch`, which call the inherent functions. They always take time as the
 /// first argument.
-pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
-    let in_lanes = s.scalar.in_lanes();
+pub fn write_batch_trait_functions(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
+    let in_lanes = s.scalar.spelling_in_lanes();
     let s = &Signature { scalar: &in_lanes, ..*s };
     for (row, arguments) in catalogue::mechanism_trait_rows() {
         let name = row.name;
@@ -198,7 +200,7 @@ pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
             Self::difference_lanes(self, from, to) }}"
     );
     if i.facts.speeds {
-        super::speeds::write_batch_trait(out, s);
+        super::speeds::write_batch_configuration_functions(out, s);
         return;
     }
     let _ = writeln!(

@@ -2,7 +2,7 @@
 
 use super::signature::Signature;
 use crate::catalogue::Shape;
-use crate::mechanism::{Limit, Model};
+use crate::mechanism::{CoordinateLimits, Model};
 use std::fmt::Write;
 
 /// Limits of an entry of `v` and its coordinate, as indices of the values of the hidden function `__limits`.
@@ -23,7 +23,7 @@ impl CoordinateLimitIndices {
     /// Returns all limits of a model, in the order of the values.
     pub fn from_model(model: &Model<'_>) -> Vec<CoordinateLimitIndices> {
         let mut next = 0;
-        let mut place = |limit: &Limit<'_>| {
+        let mut indices_of_limit = |limit: &CoordinateLimits<'_>| {
             let bounds = limit.bounds().map(|bound| {
                 let found = (next, bound?.constant_value());
                 next += 1;
@@ -33,11 +33,11 @@ impl CoordinateLimitIndices {
             let name = names.get(limit.v.0).map_or(String::new(), |(name, _)| name.clone());
             CoordinateLimitIndices { q: limit.q.0, v: limit.v.0, name, bounds }
         };
-        model.limits.iter().map(&mut place).collect()
+        model.limits.iter().map(&mut indices_of_limit).collect()
     }
 
     /// Returns the index of a bound among the limit values; `None` if the bound is absent.
-    fn index(&self, which: usize) -> Option<usize> {
+    fn index_of_bound(&self, which: usize) -> Option<usize> {
         self.bounds.get(which).copied().flatten().map(|(k, _)| k)
     }
 }
@@ -55,12 +55,12 @@ pub fn write_trait(out: &mut String, limited: &[CoordinateLimitIndices], speeds:
     let (scalar, q, v) = (s.scalar.scalar_name(), s.vector_type(s.nq), s.vector_type(s.nv));
     let _ = writeln!(out, "type Scalar = {scalar};");
     for (which, (name, infinity)) in FUNCTIONS.into_iter().enumerate() {
-        if limited.iter().all(|limit| limit.index(which).is_none()) {
+        if limited.iter().all(|limit| limit.index_of_bound(which).is_none()) {
             continue;
         }
         let format_limit_entry = |v: usize| {
             let limit = limited.iter().find(|limit| limit.v == v);
-            match limit.and_then(|limit| limit.index(which)) {
+            match limit.and_then(|limit| limit.index_of_bound(which)) {
                 Some(k) => format!("limits[{k}]"),
                 None => "none".to_string(),
             }
@@ -75,7 +75,7 @@ pub fn write_trait(out: &mut String, limited: &[CoordinateLimitIndices], speeds:
             entries.join(", ")
         );
     }
-    if limited.iter().all(|limit| limit.index(0).is_none() && limit.index(1).is_none()) {
+    if limited.iter().all(|limit| limit.index_of_bound(0).is_none() && limit.index_of_bound(1).is_none()) {
         return;
     }
     if speeds {
@@ -99,7 +99,7 @@ pub fn write_trait(out: &mut String, limited: &[CoordinateLimitIndices], speeds:
     for limit in limited {
         let k = limit.q;
         for (which, function) in [(0, "at_least"), (1, "at_most")] {
-            if let Some(bound) = limit.index(which) {
+            if let Some(bound) = limit.index_of_bound(which) {
                 let _ = writeln!(out, "q[{k}] = ::linkwork::__private::{function}(q[{k}], limits[{bound}]);");
             }
         }

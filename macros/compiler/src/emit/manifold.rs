@@ -54,9 +54,14 @@ pub fn write_manifold(out: &mut String, charts: Option<&[Chart]>, speeds: bool, 
 
 /// Writes the hidden functions that transport velocities, which contacts need. With generalized speeds there
 /// is only `carry`.
-pub fn write_transport(out: &mut String, charts: Option<&[Chart]>, speeds: bool, s: &Signature<'_>) {
+pub fn write_velocity_transport_functions(
+    out: &mut String,
+    charts: Option<&[Chart]>,
+    speeds: bool,
+    s: &Signature<'_>,
+) {
     let v = s.vector_type(s.nv);
-    let mut write_function = |kind, about| {
+    let mut write_transport_function = |kind, about| {
         let function = ManifoldFunction {
             kind,
             about,
@@ -66,12 +71,12 @@ pub fn write_transport(out: &mut String, charts: Option<&[Chart]>, speeds: bool,
         };
         function.write_manifold_function(out, "__", charts, s);
     };
-    write_function(
+    write_transport_function(
         ManifoldFunctionKind::Carry,
         "The velocity `v` in the axes that ball and free joints have after the displacement `dv`.",
     );
     if !speeds {
-        write_function(
+        write_transport_function(
             ManifoldFunctionKind::CarryRate,
             "The rate of the components of a velocity that is `v`, and constant in space, during a motion \
              with velocity `dv`.",
@@ -99,13 +104,14 @@ fn write_linear_velocity_selection(out: &mut String, charts: Option<&[Chart]>, s
             };
             let name =
                 |k: usize| if is_linear_velocity_of_free_joint(k) { format!("r{k}") } else { "_".to_owned() };
-            let list = |of: &dyn Fn(usize) -> String| (0..s.nv).map(of).collect::<Vec<_>>().join(", ");
+            let join_velocity_texts =
+                |of: &dyn Fn(usize) -> String| (0..s.nv).map(of).collect::<Vec<_>>().join(", ");
             let _ = writeln!(
                 out,
                 "let [[{}]] = dv.data.0;\n::linkwork::nalgebra::SVector::from_array_storage(\
                  ::linkwork::nalgebra::ArrayStorage([[{}]]))",
-                list(&name),
-                list(&linear_velocity_or_zero)
+                join_velocity_texts(&name),
+                join_velocity_texts(&linear_velocity_or_zero)
             );
         }
         None => out.push_str("loop {}\n"),
@@ -125,7 +131,7 @@ enum ManifoldFunctionKind {
 
 impl ManifoldFunctionKind {
     /// Returns the name of the generated function.
-    fn name(self) -> &'static str {
+    fn generated_function_name(self) -> &'static str {
         match self {
             Self::Integrate => "integrate",
             Self::Difference => "difference",
@@ -162,7 +168,7 @@ impl ManifoldFunction {
             out,
             "{hidden}/// {}\n#[inline]\n#[must_use]\npub fn {prefix}{}{}(&self, {} {{",
             self.about,
-            self.kind.name(),
+            self.kind.generated_function_name(),
             s.lanes_suffix_and_generics(),
             self.signature
         );
@@ -209,7 +215,7 @@ impl ManifoldFunction {
                 out,
                 "let {} = ::linkwork::__private::{kind}_{}({}, {});",
                 format_name_range(r.0, r.1, "r"),
-                self.kind.name(),
+                self.kind.generated_function_name(),
                 format_name_range(a.0, a.1, first),
                 format_name_range(b.0, b.1, second)
             );

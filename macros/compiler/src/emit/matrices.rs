@@ -1,8 +1,8 @@
 //! Results that consist of several matrices, and products and inverses that are completed at run time.
 
-use super::pieces::Outputs;
+use super::pieces::OutputTexts;
 use super::signature::{Signature, matrix_argument_names};
-use crate::catalogue::{InverseForm, Shape, Structure};
+use crate::catalogue::{InverseForm, MatrixStructure, Shape};
 use crate::derive::Function;
 use crate::machine::FILLED_ZEROS;
 
@@ -15,7 +15,7 @@ const NOTHING: &str = "&mut []";
 
 /// Returns the end of a function with matrix arguments: the code after the outputs are stored in the
 /// matrices.
-pub fn matrix_function_epilogue(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String {
+pub fn matrix_function_epilogue(f: &Function, s: &Signature<'_>, outputs: &OutputTexts<'_>) -> String {
     let given: Vec<String> = matrix_argument_names(f).iter().map(|name| format!("*{name}")).collect();
     match (f.shape, given.as_slice()) {
         (Shape::Forward(n), [by_q, by_v, inverse]) => format!(
@@ -53,7 +53,7 @@ pub fn matrix_function_epilogue(f: &Function, s: &Signature<'_>, outputs: &Outpu
 }
 
 /// Returns the expression of the result, composed of the outputs.
-pub fn result_expression_text(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String {
+pub fn result_expression_text(f: &Function, s: &Signature<'_>, outputs: &OutputTexts<'_>) -> String {
     let format_square_matrix = |k: usize, n: usize| outputs.output_matrix_constructor_text(k * n * n, n, n);
     match f.shape {
         Shape::Pair(n) => format!("({}, {})\n", format_square_matrix(0, n), format_square_matrix(1, n)),
@@ -84,7 +84,7 @@ pub fn result_expression_text(f: &Function, s: &Signature<'_>, outputs: &Outputs
             format!("({state}, {}, {}, {inputs})\n", format_mixed_matrix(0), format_mixed_matrix(1))
         }
         // The matrices are composed in the returned tuple, so that each of them is moved at most once.
-        Shape::Inverse(n) => format!("{}inverse\n", inverse(f, n, 0, s, outputs)),
+        Shape::Inverse(n) => format!("{}inverse\n", inverse_binding_statements(f, n, 0, s, outputs)),
         Shape::Forward(n) => format!(
             "let mut all = ({}, {}, {});\n{}{}all\n",
             format_square_matrix(0, n),
@@ -133,7 +133,13 @@ pub fn result_expression_text(f: &Function, s: &Signature<'_>, outputs: &Outputs
 }
 
 /// Returns the statements that bind `inverse` to `M⁻¹`, from the outputs from index `first` on.
-fn inverse(f: &Function, n: usize, first: usize, s: &Signature<'_>, outputs: &Outputs<'_>) -> String {
+fn inverse_binding_statements(
+    f: &Function,
+    n: usize,
+    first: usize,
+    s: &Signature<'_>,
+    outputs: &OutputTexts<'_>,
+) -> String {
     let rest = inverse_completion_statement(["inverse", NOTHING], f, n, first, s, outputs);
     format!("let mut inverse = {};\n{rest}", outputs.output_matrix_constructor_text(first, n, n))
 }
@@ -147,14 +153,14 @@ fn inverse_completion_statement(
     n: usize,
     first: usize,
     s: &Signature<'_>,
-    outputs: &Outputs<'_>,
+    outputs: &OutputTexts<'_>,
 ) -> String {
     let trailing_rows_of_width =
         |width: usize| OutputsAfterMatrix { first: first + n * n, rows: n, width, outputs };
     match &f.structure.inverse {
         InverseForm::Explicit => String::new(),
         InverseForm::LowRankUpdate(trunk) => {
-            trailing_rows_of_width(trunk.len()).trunk_completion(place, trunk, s)
+            trailing_rows_of_width(trunk.len()).trunk_completion_statement(place, trunk, s)
         }
         InverseForm::BlockArrow { trunk, limbs } => {
             trailing_rows_of_width(trunk.len()).inversion_statement([place, solved], trunk, limbs, s)
@@ -173,7 +179,7 @@ struct OutputsAfterMatrix<'a> {
     rows: usize,
     /// Number of program outputs in each row.
     width: usize,
-    outputs: &'a Outputs<'a>,
+    outputs: &'a OutputTexts<'a>,
 }
 
 impl OutputsAfterMatrix<'_> {
@@ -191,7 +197,7 @@ impl OutputsAfterMatrix<'_> {
 
     /// Returns the statement that adds the product of the trunk's columns and these factors to the matrix
     /// `place`; empty if all factors are zero.
-    fn trunk_completion(&self, place: &str, trunk: &[usize], s: &Signature<'_>) -> String {
+    fn trunk_completion_statement(&self, place: &str, trunk: &[usize], s: &Signature<'_>) -> String {
         let used: Vec<(usize, IndexRange)> =
             (0..self.rows).filter_map(|k| Some((k, self.nonzero_range(k)?))).collect();
         let runs = group_factor_columns(used.iter().enumerate().map(|(place, (k, used))| (*k, *used, place)));
@@ -233,11 +239,11 @@ impl OutputsAfterMatrix<'_> {
         }
         let runs =
             group_factor_columns(used.iter().enumerate().filter_map(|(k, used)| Some((k, (*used)?, k))));
-        let format_runs_of_limb = |limb: &Vec<usize>| {
+        let format_column_runs_of_limb = |limb: &Vec<usize>| {
             let runs = group_factor_columns(limb.iter().map(|k| (*k, IndexRange::default(), *k)));
             format!("&{:?}", runs.iter().map(|run| run.0).collect::<Vec<IndexRange>>())
         };
-        let limbs: Vec<String> = limbs.iter().map(format_runs_of_limb).collect();
+        let limbs: Vec<String> = limbs.iter().map(format_column_runs_of_limb).collect();
         format!(
             "{RUNTIME}::invert::<Ops, {}, {}, {}, {}, {}, {length}, _>(
                 &mut {place}, {trunk:?}, &[{}], &[{}], &{runs:?}, {solved},
@@ -273,7 +279,7 @@ fn group_factor_columns(
 }
 
 /// Returns the statements that store the columns that are already computed in the matrix arguments.
-fn known_column_store_statements(f: &Function, outputs: &Outputs<'_>, n: usize) -> String {
+fn known_column_store_statements(f: &Function, outputs: &OutputTexts<'_>, n: usize) -> String {
     let columns = matrix_argument_names(f).into_iter().zip(&f.structure.known);
     let columns = columns.flat_map(|(matrix, known)| known.iter().map(move |column| (matrix, column)));
     let texts = columns.enumerate().map(|(k, (matrix, column))| {
@@ -288,7 +294,7 @@ fn acceleration_conversion_statement(
     inverse: &str,
     n: usize,
     s: &Signature<'_>,
-    structure: &Structure,
+    structure: &MatrixStructure,
 ) -> String {
     let is_known_factor_entry = |k: usize| structure.known[k / (n * n)].contains(&(k / n % n));
     let is_known_or_zero =
@@ -336,7 +342,7 @@ fn tiling_types(rows: impl Fn(bool) -> String) -> String {
 }
 
 /// Run of neighbouring columns with the same nonzero rows.
-struct Run {
+struct ColumnRun {
     /// Half-open range of the columns.
     columns: (usize, usize),
     /// Indices of rows that are nonzero in at least one of the columns.
@@ -351,9 +357,9 @@ fn group_columns_by_zero_rows(
     columns: usize,
     first: usize,
     is_zero: &dyn Fn(usize) -> bool,
-) -> (Vec<(usize, usize)>, Vec<Run>) {
+) -> (Vec<(usize, usize)>, Vec<ColumnRun>) {
     let is_zero_entry = |j: usize, i: usize| is_zero(first + j * n + i);
-    let mut runs: Vec<Run> = Vec::new();
+    let mut runs: Vec<ColumnRun> = Vec::new();
     for j in 0..columns {
         let rows: Vec<usize> = (0..n).filter(|i| !is_zero_entry(j, *i)).collect();
         if rows.is_empty() {
@@ -365,13 +371,13 @@ fn group_columns_by_zero_rows(
                 (0..n).filter(|i| rows.binary_search(i).is_ok() || run.rows.contains(i)).collect();
             let count_zeros_in_column = |j: usize| all.iter().filter(|i| is_zero_entry(j, **i)).count();
             if (run.columns.0..=j).all(|j| count_zeros_in_column(j) <= FILLED_ZEROS) {
-                *run = Run { columns: (run.columns.0, j + 1), rows: all };
+                *run = ColumnRun { columns: (run.columns.0, j + 1), rows: all };
                 continue;
             }
         }
-        runs.push(Run { columns, rows });
+        runs.push(ColumnRun { columns, rows });
     }
-    let zeros_filled_by_run = |run: &Run| {
+    let zeros_filled_by_run = |run: &ColumnRun| {
         let (from, to) = run.columns;
         let entries = (from..to).flat_map(|j| run.rows.iter().map(move |i| (j, *i)));
         entries.filter(|(j, i)| is_zero_entry(*j, *i)).collect::<Vec<_>>()
@@ -388,7 +394,7 @@ fn column_groups_source(n: usize, columns: usize, first: usize, is_zero: &dyn Fn
 
 /// Returns the body of a function that calls its variant with `count` matrix arguments, so that no large
 /// value is moved.
-pub fn body_calling_filling_variant(f: &Function, count: usize, s: &Signature<'_>) -> String {
+pub fn body_calling_matrix_argument_variant(f: &Function, count: usize, s: &Signature<'_>) -> String {
     let arguments: Vec<&str> = f.arguments.iter().map(|a| a.argument_name()).collect();
     let zeros = vec![format!("<{}>::zeros()", s.shape_type(Shape::Square(s.nv))); count];
     let given: Vec<String> = (0..count).map(|k| format!("&mut all.{k}")).collect();
@@ -426,7 +432,7 @@ fn linear_system_expression(
     m: usize,
     first: usize,
     s: &Signature<'_>,
-    outputs: &Outputs<'_>,
+    outputs: &OutputTexts<'_>,
 ) -> String {
     let factor = format!("(&mut by_u, {})", column_groups_source(n, m, first, &|k| outputs.is_zero(k)));
     format!(

@@ -3,7 +3,7 @@
 use super::interface::{ALLOW, ImplGenerics, Interface};
 use super::signature::Signature;
 use super::states;
-use crate::catalogue::{Argument, BY_PARAMETERS, DERIVATIVES, Id, Shape};
+use crate::catalogue::{Argument, BY_PARAMETERS, DERIVATIVES, GeneratedId, Shape};
 use crate::derive::Function;
 use std::fmt::Write;
 
@@ -40,7 +40,9 @@ pub fn write_impls(
         |f: &Function| i.states.iter().any(|(name, _)| f.name == states::rate_function_name(name));
     let outputs: Vec<&Function> = functions
         .iter()
-        .filter(|f| f.id == Id::Output && !is_rate_of_state(f) && !matches!(f.shape, Shape::Matrix(..)))
+        .filter(|f| {
+            f.id == GeneratedId::Output && !is_rate_of_state(f) && !matches!(f.shape, Shape::Matrix(..))
+        })
         .collect();
     let count: usize = outputs.iter().map(|f| entry_count(f)).sum();
     if count == 0 {
@@ -52,7 +54,7 @@ pub fn write_impls(
     if !i.facts.requests.derivatives {
         return;
     }
-    measurements.write_derivatives(out);
+    measurements.write_output_derivatives_trait(out);
     // Derivatives of the states themselves have the same requirement.
     if !i.states.is_empty() && i.facts.constraints.is_none() {
         measurements.write_state_derivative_trait(out);
@@ -121,7 +123,7 @@ impl Measurements<'_> {
     }
 
     /// Writes the implementation of the trait `OutputDerivatives`.
-    fn write_derivatives(&self, out: &mut String) {
+    fn write_output_derivatives_trait(&self, out: &mut String) {
         self.begin_trait_impl(out, "OutputDerivatives", &self.trait_sizes());
         let of = self.s.shape_type(Shape::Jacobians(self.count, self.s.nv, self.s.nu));
         let _ = writeln!(

@@ -29,7 +29,7 @@ pub enum PrecedenceLevel {
 
 /// Source text of a value that has no variable of its own.
 #[derive(Clone, Default)]
-pub struct Piece {
+pub struct ExpressionPiece {
     /// Source text of the expression.
     pub text: String,
     /// Numbers of the values whose names occur in the expression.
@@ -39,14 +39,14 @@ pub struct Piece {
 }
 
 /// Outputs of a program as Rust source text.
-pub struct Outputs<'a> {
+pub struct OutputTexts<'a> {
     /// Expressions of the outputs.
-    pub pieces: &'a [Piece],
+    pub pieces: &'a [ExpressionPiece],
     /// Closure that returns whether an output is a constant zero.
     pub is_zero: &'a dyn Fn(usize) -> bool,
 }
 
-impl Outputs<'_> {
+impl OutputTexts<'_> {
     /// Returns a Rust array of a range of outputs.
     pub fn array_of_outputs(&self, range: std::ops::Range<usize>) -> String {
         array_expression(self.pieces.get(range).unwrap_or(&[]).iter().map(|p| p.text.as_str()).collect())
@@ -74,7 +74,7 @@ impl Outputs<'_> {
                 Some(n) => self.array_of_columns(first, field.rows, n),
             };
             let _ = writeln!(text, "{}: {value},", field.name);
-            first += field.length();
+            first += field.field_length();
         }
         text.push_str("}\n");
         text

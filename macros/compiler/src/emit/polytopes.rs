@@ -1,7 +1,7 @@
 //! Code of the features of polytopes in contact.
 
 use super::signature::Signature;
-use crate::catalogue::Called;
+use crate::catalogue::CalledFunction;
 use crate::mechanism::{Model, Polytope};
 use std::fmt::Write;
 
@@ -33,8 +33,8 @@ impl ContactPolytopes {
         if self.pairs.is_empty() {
             return;
         }
-        let name = Called::ContactFeatures.function_name();
-        let arguments = s.with_time_argument(Called::ContactFeatures.arguments());
+        let name = CalledFunction::ContactFeatures.function_name();
+        let arguments = s.with_time_argument(CalledFunction::ContactFeatures.arguments());
         let names: Vec<&str> = arguments.iter().map(|a| a.argument_name()).collect();
         let _ = writeln!(
             out,
@@ -51,7 +51,7 @@ impl ContactPolytopes {
         if !is_batched {
             return;
         }
-        let in_lanes = s.scalar.in_lanes();
+        let in_lanes = s.scalar.spelling_in_lanes();
         let lanes = Signature { scalar: &in_lanes, ..*s };
         let one = arguments.iter().map(|a| match a.argument_name() {
             "t" => "t.0[k]".to_string(),
@@ -89,7 +89,7 @@ fn polytope_text(polytope: &Polytope) -> String {
         polytope.vertices,
         faces.collect::<Vec<_>>().join(", "),
         edges.collect::<Vec<_>>().join(", "),
-        polytope.size(),
+        polytope.half_sum_of_lengths(),
         polytope.radius
     )
 }

@@ -8,7 +8,7 @@ use super::docs::operation_count_table;
 use super::function::write_function;
 use super::implementations::write_impls;
 use super::interface::{ALLOW, ImplGenerics, Interface};
-use super::manifold::{write_manifold, write_transport};
+use super::manifold::{write_manifold, write_velocity_transport_functions};
 use super::signature::Signature;
 use super::{constraints, contacts, differentiable, lanes, measurements, reactions};
 use crate::derive::Function;
@@ -61,9 +61,9 @@ pub fn write_prepared_struct_and_functions(
     }
     write_manifold(&mut methods, content.charts, i.facts.speeds, s);
     if !i.contacts.is_empty() {
-        write_transport(&mut methods, content.charts, i.facts.speeds, s);
+        write_velocity_transport_functions(&mut methods, content.charts, i.facts.speeds, s);
     }
-    differentiable::write_methods(&mut methods, content.charts, functions, i, s);
+    differentiable::write_configuration_and_input_derivatives(&mut methods, content.charts, functions, i, s);
     differentiable::write_forward_second_derivatives(&mut methods, content.charts, i, s);
     lanes::write_methods(&mut methods, &mut bodies, i, functions, content.charts, s);
     write_impls(&head, out, &name, &methods, i, s);

@@ -6,7 +6,7 @@ use super::interface::Interface;
 use super::signature::Signature;
 use crate::catalogue::{Argument, REACTION, TOUCHED};
 use crate::derive::Function;
-use crate::mechanism::{Diagram, Origin};
+use crate::mechanism::{ActionOrigin, FreeBodyDiagram};
 use std::fmt::Write;
 
 /// Writes the functions of outputs that contain joint reactions, and of free-body diagrams, for the hidden
@@ -69,7 +69,7 @@ pub fn write_methods(out: &mut String, i: &Interface<'_>, functions: &[Function]
 fn write_contact_free_body_diagram(
     out: &mut String,
     i: &Interface<'_>,
-    (name, diagram): (&str, &Diagram),
+    (name, diagram): (&str, &FreeBodyDiagram),
     (arguments, tau, solve, call): (&[Argument], &str, &str, &str),
     s: &Signature<'_>,
 ) {
@@ -150,14 +150,15 @@ pub fn write_contact_output_stubs(
 }
 
 /// Returns the Rust type of a free-body diagram.
-fn free_body_diagram_type(diagram: &Diagram, s: &Signature<'_>) -> String {
+fn free_body_diagram_type(diagram: &FreeBodyDiagram, s: &Signature<'_>) -> String {
     format!("::linkwork::free_body::Diagram<{}, {}>", s.scalar.scalar_name(), diagram.actions.len())
 }
 
 /// Returns the expression that constructs a free-body diagram from the expression `numbers` of its values.
-fn diagram_expression(diagram: &Diagram, numbers: &str) -> String {
-    let origin =
-        |(name, origin): &(String, Origin)| format!("({name:?}, ::linkwork::free_body::Origin::{origin:?})");
+fn diagram_expression(diagram: &FreeBodyDiagram, numbers: &str) -> String {
+    let origin = |(name, origin): &(String, ActionOrigin)| {
+        format!("({name:?}, ::linkwork::free_body::Origin::{origin:?})")
+    };
     let actions: Vec<String> = diagram.actions.iter().map(origin).collect();
     format!(
         "::linkwork::free_body::Diagram::new({:?}, [{}], ({numbers}).as_slice())",
@@ -167,7 +168,7 @@ fn diagram_expression(diagram: &Diagram, numbers: &str) -> String {
 }
 
 /// Returns the description of the function of a free-body diagram.
-fn diagram_docs(diagram: &Diagram, s: &Signature<'_>) -> String {
+fn diagram_docs(diagram: &FreeBodyDiagram, s: &Signature<'_>) -> String {
     let motion = match s.nu {
         0 => "in the motion that the state determines",
         _ => "in the motion under the inputs",

@@ -20,13 +20,13 @@ impl ScalarSpelling {
 
     /// Returns the spelling for functions of several states, generic over `LANES`. Parameters have the same
     /// value in all lanes.
-    pub fn in_lanes(&self) -> ScalarSpelling {
-        let lanes = Some(format!("::linkwork::Lanes<{}, LANES>", self.one()));
+    pub fn spelling_in_lanes(&self) -> ScalarSpelling {
+        let lanes = Some(format!("::linkwork::Lanes<{}, LANES>", self.single_lane_scalar_type()));
         ScalarSpelling { lanes, ..self.clone() }
     }
 
     /// Returns the Rust type of the scalar in one SIMD lane.
-    pub fn one(&self) -> &str {
+    pub fn single_lane_scalar_type(&self) -> &str {
         match &self.scalar {
             ScalarType::F64 => "f64",
             ScalarType::F32 => "f32",
@@ -36,7 +36,7 @@ impl ScalarSpelling {
 
     /// Returns the name of the scalar type.
     pub fn scalar_name(&self) -> &str {
-        self.lanes.as_deref().unwrap_or_else(|| self.one())
+        self.lanes.as_deref().unwrap_or_else(|| self.single_lane_scalar_type())
     }
 
     /// Returns true if the scalar is a type parameter of the struct.
@@ -50,12 +50,12 @@ impl ScalarSpelling {
     }
 
     /// Returns the names of the runtime functions that constants may call.
-    pub fn runtime_functions_of_constants(&self) -> impl Iterator<Item = &'static str> {
+    pub fn runtime_functions_called_by_constants(&self) -> impl Iterator<Item = &'static str> {
         self.is_generic().then_some("constant").into_iter()
     }
 
     /// Returns the name of a parameter's field.
-    pub fn parameter_field(&self, k: usize) -> &str {
+    pub fn parameter_field_name(&self, k: usize) -> &str {
         &self.parameters[k]
     }
 
@@ -65,7 +65,7 @@ impl ScalarSpelling {
     }
 
     /// Returns the expression of a parameter's value.
-    pub fn parameter_value(&self, k: usize) -> String {
+    pub fn parameter_value_expression(&self, k: usize) -> String {
         self.broadcast_number(format!("self.{}", self.parameters[k]))
     }
 
@@ -81,7 +81,7 @@ impl ScalarSpelling {
     /// Returns the expression of a number, broadcast to all lanes for functions of several states.
     pub fn broadcast_number(&self, number: String) -> String {
         match self.uses_batch_lanes() {
-            true => format!("Ops::splat::<{}, LANES>({number})", self.one()),
+            true => format!("Ops::splat::<{}, LANES>({number})", self.single_lane_scalar_type()),
             false => number,
         }
     }

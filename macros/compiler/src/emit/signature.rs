@@ -2,7 +2,7 @@
 //! `matrices` composes the results.
 
 use super::scalar::ScalarSpelling;
-use crate::catalogue::{Argument, Id, Shape};
+use crate::catalogue::{Argument, GeneratedId, Shape};
 use crate::derive::Function;
 use crate::machine::FILLING_INSTRUCTIONS;
 use std::fmt::Write;
@@ -17,7 +17,7 @@ pub fn matrix_argument_names(f: &Function) -> Vec<&'static str> {
 /// Returns the number of matrix arguments of the variant that the body of `f` calls, or `None` if `f` has a
 /// body of its own. The call avoids two copies of a long body, which rustc would have to process.
 pub fn variant_matrix_argument_count(f: &Function) -> Option<usize> {
-    let has_variant = f.id == Id::InverseDynamicsDerivatives;
+    let has_variant = f.id == GeneratedId::InverseDynamicsDerivatives;
     match f.shape {
         _ if !matrix_argument_names(f).is_empty() => None,
         Shape::CalledForward(_) => Some(3),

@@ -48,20 +48,20 @@ pub fn write_manifold(out: &mut String, stub: bool, s: &Signature<'_>) {
 
 /// Writes the functions of the trait `Mechanism` for which only mechanisms with generalized speeds override
 /// the default.
-pub fn write_trait(out: &mut String, s: &Signature<'_>) {
+pub fn write_mechanism_trait_overrides(out: &mut String, s: &Signature<'_>) {
     let (q, v) = (s.vector_type(s.nq), s.vector_type(s.nv));
     let _ = writeln!(
         out,
         "#[inline]\nfn tangent_rate(&self, _dv: &{v}, _v: &{v}) -> {v} {{ {v}::repeat({nan}) }}
         #[inline]\nfn displacement_rate(&self, q: &{q}, dv: &{v}, v: &{v}) -> {v} {{ \
             Self::displacement_rate(self, q, dv, v) }}",
-        v = turbofish(&v),
+        v = turbofish_form_of_type(&v),
         nan = nan_expression(s),
     );
 }
 
 /// Writes the functions on the configuration space for the trait `Batch`.
-pub fn write_batch_trait(out: &mut String, s: &Signature<'_>) {
+pub fn write_batch_configuration_functions(out: &mut String, s: &Signature<'_>) {
     let (q, v) = (s.vector_type(s.nq), s.vector_type(s.nv));
     let _ = writeln!(
         out,
@@ -69,12 +69,12 @@ pub fn write_batch_trait(out: &mut String, s: &Signature<'_>) {
          {v}::repeat(::linkwork::__private::Lanes([::linkwork::__private::constant(f64::NAN); LANES])) }}
         #[inline]\nfn displacement_rate_lanes<const LANES: usize>(&self, q: &{q}, dv: &{v}, v: &{v}) -> {v} \
             {{ Self::displacement_rate_lanes(self, q, dv, v) }}",
-        v = turbofish(&v),
+        v = turbofish_form_of_type(&v),
     );
 }
 
 /// Returns a type in the form in which its functions are called (`SVector::<f64, 2>`).
-fn turbofish(v: &str) -> String {
+fn turbofish_form_of_type(v: &str) -> String {
     v.replacen("SVector<", "SVector::<", 1)
 }
 
@@ -84,7 +84,7 @@ fn nan_expression(s: &Signature<'_>) -> String {
 }
 
 /// Writes the functions of the trait `Derivatives` on the configuration space.
-pub fn write_derivatives(out: &mut String, s: &Signature<'_>) {
+pub fn write_configuration_space_derivatives(out: &mut String, s: &Signature<'_>) {
     let (q, v, square) = (s.vector_type(s.nq), s.vector_type(s.nv), s.shape_type(Shape::Square(s.nv)));
     let unknown = format!("{}::repeat({})", square.replacen("SMatrix<", "SMatrix::<", 1), nan_expression(s));
     let _ = writeln!(

@@ -1,6 +1,6 @@
 //! Code of the statements of a function body, in order.
 
-use super::pieces::{Piece, Statement};
+use super::pieces::{ExpressionPiece, Statement};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
@@ -9,7 +9,7 @@ pub const BLOCK: usize = 200;
 
 /// Writes the statements, and those of a long body in blocks: rustc's debug information needs stack for every
 /// binding of a block.
-pub fn write_statements(out: &mut String, statements: &[Statement], outputs: &[Piece]) {
+pub fn write_statements(out: &mut String, statements: &[Statement], outputs: &[ExpressionPiece]) {
     if statements.len() <= BLOCK {
         for statement in statements {
             write_body_statement(out, statement);

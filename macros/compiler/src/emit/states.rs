@@ -40,7 +40,7 @@ pub fn write_impls(out: &mut String, functions: &[Function], i: &Interface<'_>, 
     out.push_str("}\n");
     if differentiable {
         begin_impl_block(out, "FirstOrderDerivatives");
-        write_derivatives(out, &rates, i, s);
+        write_state_derivatives(out, &rates, i, s);
         out.push_str("}\n");
     }
 }
@@ -60,7 +60,7 @@ fn write_first_order_states(out: &mut String, rates: &[&Function], i: &Interface
     let (vector, parameters) = (s.vector_type(n), s.parameter_list(&TAKEN));
     let names: Vec<String> = i.states.iter().map(|(name, _)| format!("{name:?}")).collect();
     let own: Vec<String> =
-        i.states.iter().map(|(_, k)| format!("self.{}", s.scalar.parameter_field(*k))).collect();
+        i.states.iter().map(|(_, k)| format!("self.{}", s.scalar.parameter_field_name(*k))).collect();
     // All fields are named, because the struct need not be `Clone`.
     let field_name = |field: &syn::Field| field.ident.as_ref().map(ToString::to_string);
     let of_struct = i.shell.parameters.iter().chain(&i.shell.tables).filter_map(field_name);
@@ -110,7 +110,7 @@ fn write_extended_motion_derivatives(out: &mut String, n: usize, s: &Signature<'
 }
 
 /// Writes the derivatives of the rates of the states, and the derivatives of the dynamics by the states.
-fn write_derivatives(out: &mut String, rates: &[&Function], i: &Interface<'_>, s: &Signature<'_>) {
+fn write_state_derivatives(out: &mut String, rates: &[&Function], i: &Interface<'_>, s: &Signature<'_>) {
     let (n, scalar) = (rates.len(), s.scalar.scalar_name());
     let which: Vec<String> = i.states.iter().map(|(_, k)| k.to_string()).collect();
     let which = which.join(", ");

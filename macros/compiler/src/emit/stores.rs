@@ -1,6 +1,6 @@
 //! Stores of results in matrix arguments, each immediately after the result is computed.
 
-use super::pieces::{Outputs, Piece, Statement};
+use super::pieces::{ExpressionPiece, OutputTexts, Statement};
 use super::signature::matrix_argument_names;
 use crate::catalogue::{InverseForm, Shape};
 use crate::derive::Function;
@@ -10,7 +10,7 @@ use std::fmt;
 
 /// Entry of a matrix argument, to which an output is stored.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Entry {
+struct MatrixEntry {
     /// Name of the matrix that contains the entry.
     matrix: &'static str,
     /// Column index of the entry.
@@ -19,7 +19,7 @@ struct Entry {
     row: usize,
 }
 
-impl fmt::Display for Entry {
+impl fmt::Display for MatrixEntry {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}.data.0[{}][{}]", self.matrix, self.column, self.row)
     }
@@ -31,9 +31,9 @@ pub fn insert_result_stores(
     f: &Function,
     program: &Program,
     statements: Vec<Statement>,
-    outputs: &Outputs<'_>,
-) -> (Vec<Statement>, Vec<Piece>) {
-    let places = stored_entries(f, outputs);
+    outputs: &OutputTexts<'_>,
+) -> (Vec<Statement>, Vec<ExpressionPiece>) {
+    let places = entries_storing_outputs(f, outputs);
     let all = match !program.gathers.is_empty() && statements.len() <= TRANSPOSED_STATEMENTS {
         true => append_all_stores(statements, &places, outputs),
         false => insert_stores_after_dependencies(program, statements, &places, outputs),
@@ -47,14 +47,16 @@ pub fn insert_result_stores(
 /// Returns the entries in which each output is stored. Constant zeros of derivatives are not stored; those of
 /// an inverse are, because terms are added to it later. Trunk columns of a block arrow inverse are not
 /// stored, because they are computed later.
-fn stored_entries(f: &Function, outputs: &Outputs<'_>) -> Vec<Vec<Entry>> {
+fn entries_storing_outputs(f: &Function, outputs: &OutputTexts<'_>) -> Vec<Vec<MatrixEntry>> {
     let given = matrix_argument_names(f);
     let [matrix, ..] = *given.as_slice() else { return Vec::new() };
     let (before, has_forces, n) = match f.shape {
         Shape::Symmetric(_) => {
             let symmetric_entries = |&(row, column): &(usize, usize)| {
-                let mut places =
-                    vec![Entry { matrix, column, row }, Entry { matrix, column: row, row: column }];
+                let mut places = vec![
+                    MatrixEntry { matrix, column, row },
+                    MatrixEntry { matrix, column: row, row: column },
+                ];
                 places.dedup();
                 places
             };
@@ -65,7 +67,7 @@ fn stored_entries(f: &Function, outputs: &Outputs<'_>) -> Vec<Vec<Entry>> {
         _ => return Vec::new(),
     };
     let entries_of_square_matrix =
-        |matrix: &'static str| (0..n * n).map(move |k| Entry { matrix, column: k / n, row: k % n });
+        |matrix: &'static str| (0..n * n).map(move |k| MatrixEntry { matrix, column: k / n, row: k % n });
     let all = given.into_iter().flat_map(entries_of_square_matrix).enumerate();
     let overwritten = match &f.structure.inverse {
         InverseForm::BlockArrow { trunk, .. } => trunk.as_slice(),
@@ -83,8 +85,8 @@ fn stored_entries(f: &Function, outputs: &Outputs<'_>) -> Vec<Vec<Entry>> {
 fn insert_stores_after_dependencies(
     program: &Program,
     statements: Vec<Statement>,
-    places: &[Vec<Entry>],
-    outputs: &Outputs<'_>,
+    places: &[Vec<MatrixEntry>],
+    outputs: &OutputTexts<'_>,
 ) -> Vec<Statement> {
     let size = statements.iter().flat_map(|s| &s.names).max().map_or(0, |m| m + 1);
     let mut bound_by = vec![0; size];
@@ -97,7 +99,7 @@ fn insert_stores_after_dependencies(
     let last_binding_statement = |needs: &[usize]| {
         needs.iter().filter_map(|need| index_of_binding_statement(*need)).max().unwrap_or(0)
     };
-    let mut pairs: Vec<Vec<[Lane; 2]>> = ready.iter().map(|_| Vec::new()).collect();
+    let mut pairs: Vec<Vec<[StoredLane; 2]>> = ready.iter().map(|_| Vec::new()).collect();
     for [one, next] in
         adjacent_lane_pairs(result_lanes_sorted_by_entry(program, places, &index_of_binding_statement))
     {
@@ -129,9 +131,9 @@ fn insert_stores_after_dependencies(
 }
 
 /// SIMD lane of a vector that is stored in a matrix.
-struct Lane {
+struct StoredLane {
     /// Matrix entry in which the SIMD lane is stored.
-    place: Entry,
+    place: MatrixEntry,
     /// Index of the program output that is stored.
     output: usize,
     /// Number of the vector value that contains the lane.
@@ -145,16 +147,16 @@ struct Lane {
 /// Returns all results that are SIMD lanes of named vectors, sorted by their matrix entries.
 fn result_lanes_sorted_by_entry(
     program: &Program,
-    places: &[Vec<Entry>],
+    places: &[Vec<MatrixEntry>],
     known: &dyn Fn(usize) -> Option<usize>,
-) -> Vec<Lane> {
+) -> Vec<StoredLane> {
     let mut all = Vec::new();
     for (output, (operand, places)) in program.outputs.iter().zip(places).enumerate() {
         if let Operand::Value(v) = operand
             && let Op::Lane(lane, Operand::Value(vector)) = program.instructions[*v]
             && let Some(known) = known(vector)
         {
-            all.extend(places.iter().map(|place| Lane { place: *place, output, vector, lane, known }));
+            all.extend(places.iter().map(|place| StoredLane { place: *place, output, vector, lane, known }));
         }
     }
     all.sort_by_key(|lane| lane.place);
@@ -163,13 +165,13 @@ fn result_lanes_sorted_by_entry(
 
 /// Returns pairs of lanes that one instruction can store: their entries are adjacent in a column, and their
 /// vectors are computed at most [`NEAR_STATEMENTS`] statements apart.
-fn adjacent_lane_pairs(lanes: Vec<Lane>) -> Vec<[Lane; 2]> {
+fn adjacent_lane_pairs(lanes: Vec<StoredLane>) -> Vec<[StoredLane; 2]> {
     let mut pairs = Vec::new();
     let mut rest = lanes.into_iter().peekable();
     while let Some(one) = rest.next() {
-        let below = Entry { row: one.place.row + 1, ..one.place };
+        let below = MatrixEntry { row: one.place.row + 1, ..one.place };
         let is_lane_below =
-            |next: &Lane| next.place == below && next.known.abs_diff(one.known) <= NEAR_STATEMENTS;
+            |next: &StoredLane| next.place == below && next.known.abs_diff(one.known) <= NEAR_STATEMENTS;
         if let Some(next) = rest.next_if(is_lane_below) {
             pairs.push([one, next]);
         }
@@ -179,15 +181,15 @@ fn adjacent_lane_pairs(lanes: Vec<Lane>) -> Vec<[Lane; 2]> {
 
 /// Returns the statements that store pairs of lanes. All lanes of a vector in adjacent rows are stored
 /// together, as are all lanes of two vectors in adjacent columns; remaining pairs are stored individually.
-fn pair_store_statements(pairs: &[[Lane; 2]], widths: &[usize]) -> Vec<Statement> {
+fn pair_store_statements(pairs: &[[StoredLane; 2]], widths: &[usize]) -> Vec<Statement> {
     let mut statements = Vec::new();
     let mut rest = pairs;
     while let [[one, next], ..] = rest {
-        let Entry { matrix, column, row } = one.place;
+        let MatrixEntry { matrix, column, row } = one.place;
         let (a, b, width) = (one.vector, next.vector, widths[one.vector]);
         let is_continuation_of_run = |step: usize, down: usize, right: usize| {
-            move |(k, [x, y]): &(usize, &[Lane; 2])| {
-                let place = Entry { matrix, column: column + k * right, row: row + k * down };
+            move |(k, [x, y]): &(usize, &[StoredLane; 2])| {
+                let place = MatrixEntry { matrix, column: column + k * right, row: row + k * down };
                 let lanes = (one.lane + k * step, next.lane + k * step);
                 x.place == place && (x.vector, y.vector) == (a, b) && (x.lane, y.lane) == lanes
             }
@@ -221,14 +223,14 @@ fn pair_store_statements(pairs: &[[Lane; 2]], widths: &[usize]) -> Vec<Statement
 /// Appends the stores of all results after the last statement, in the order of their entries.
 fn append_all_stores(
     mut statements: Vec<Statement>,
-    places: &[Vec<Entry>],
-    outputs: &Outputs<'_>,
+    places: &[Vec<MatrixEntry>],
+    outputs: &OutputTexts<'_>,
 ) -> Vec<Statement> {
     let stored =
         || outputs.pieces.iter().zip(places).enumerate().filter(|(_, (_, places))| !places.is_empty());
     let mut text: Vec<String> =
         stored().map(|(k, (piece, _))| format!("let entry{k} = {};", piece.text)).collect();
-    let mut all: Vec<(Entry, usize)> =
+    let mut all: Vec<(MatrixEntry, usize)> =
         stored().flat_map(|(k, (_, places))| places.iter().map(move |place| (*place, k))).collect();
     all.sort_unstable();
     text.extend(all.iter().map(|(place, k)| format!("{place} = entry{k};")));

@@ -17,7 +17,7 @@ pub struct ParameterCondition {
 
 impl ParameterCondition {
     /// Returns all conditions of a model, in the order of the values of the hidden function `__figures`.
-    pub fn from_model(model: &Model<'_>) -> Vec<ParameterCondition> {
+    pub fn conditions_of_model(model: &Model<'_>) -> Vec<ParameterCondition> {
         let parameter_name = |k: &usize| model.parameters.get(*k).cloned();
         let parameter_condition = |requirement: &Requirement<'_>| ParameterCondition {
             rule: requirement.rule.runtime_rule_name(),

@@ -3,8 +3,8 @@
 use super::{Limits, Simplifier, quaternion_symbols, rank_of_symbol};
 use crate::algebra::normal::NormalFormCache;
 use crate::algebra::polynomial::{Polynomial, Ring};
-use crate::expr::replace::replace_all;
-use crate::expr::sample::always_equals;
+use crate::expr::replace::substitute_symbols_in_all;
+use crate::expr::sample::always_equals_number;
 use crate::expr::{Expr, Symbol};
 use crate::kinematics::{Joint, symbols_in};
 use crate::mechanics::crba::Matrix;
@@ -58,8 +58,8 @@ pub fn canonical_equations<'g>(
         power - replace_velocities(&[energy::kinetic_energy(model, joints, &velocity)], &velocity)[0]
             + potential
     };
-    let rate = momentum::momentum_rate(model, joints, &velocity);
-    let inputs = forces::generalized_forces(model, joints);
+    let rate = momentum::momentum_rate_without_inputs(model, joints, &velocity);
+    let inputs = forces::generalized_forces_of_inputs(model, joints);
     let rate: Vec<Expr<'g>> = rate.into_iter().zip(inputs).map(|(rate, input)| rate + input).collect();
     let rate = replace_velocities(&rate, &velocity);
     let all: Vec<Expr<'g>> =
@@ -80,7 +80,7 @@ pub fn canonical_equations<'g>(
 }
 
 fn replace_velocities<'g>(e: &[Expr<'g>], v: &[Expr<'g>]) -> Vec<Expr<'g>> {
-    replace_all(e, &|s| match Quantity::from_symbol(s) {
+    substitute_symbols_in_all(e, &|s| match Quantity::from_symbol(s) {
         Quantity::Velocity(k) => Some(v[k]),
         _ => None,
     })
@@ -102,7 +102,7 @@ pub(super) fn velocities_of_momenta<'g>(
             let row = &mass[group[k]];
             // Some entries are zero only by trigonometric identities.
             let more: Vec<usize> =
-                (0..p.len()).filter(|j| !always_equals(row[*j], 0.0) && !group.contains(j)).collect();
+                (0..p.len()).filter(|j| !always_equals_number(row[*j], 0.0) && !group.contains(j)).collect();
             group.extend(more);
             k += 1;
         }

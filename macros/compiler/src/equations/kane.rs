@@ -22,12 +22,14 @@ use crate::equations::print::mathml::format_equations_as_html;
 use crate::equations::print::names::name_with_primes;
 use crate::equations::print::{Latex, MathMl, Plain, PolynomialWriter, PrintedEquations, Style, wrap_text};
 use crate::expr::eval::Tape;
-use crate::expr::replace::replace_all;
+use crate::expr::replace::substitute_symbols_in_all;
 use crate::expr::{Expr, Symbol};
-use crate::kinematics::mobility::sample_configurations;
+use crate::kinematics::mobility::sample_feasible_configurations;
 use crate::kinematics::redundancy::OrthonormalRowBasis;
-use crate::kinematics::speeds::{inverse, shorten_expression};
-use crate::kinematics::{Joint, Rows, random_configuration, symbol_value_at_rest, time_derivative};
+use crate::kinematics::speeds::{inverse_of_speed_matrix, shorten_expression};
+use crate::kinematics::{
+    CompiledConstraintRows, Joint, random_configuration, symbol_value_at_rest, time_derivative,
+};
 use crate::mechanics::crba::Matrix;
 use crate::mechanics::speeds::SpeedTransformation;
 use crate::mechanics::{acceleration_symbols, constraints, forces, rnea, velocity_symbols};
@@ -90,18 +92,18 @@ pub fn kane_equations<'g>(
     let solved = EliminatedMotion::new(own, &rows, dependent).ok_or(KaneFailure::Choice)?;
     let v = velocity_symbols(model);
     let mut needed = rnea::inverse_dynamics(model, joints, &v, Some(&acceleration_symbols(model)));
-    let mut inputs = forces::generalized_forces(model, joints);
+    let mut inputs = forces::generalized_forces_of_inputs(model, joints);
     let mut rates = Vec::new();
     if let Some(speeds) = speeds {
         (needed, inputs) = (speeds.transform_forces(&needed), speeds.transform_forces(&inputs));
         rates = speeds
             .replaced_velocity_indices()
             .into_iter()
-            .map(|k| (k, solved.express_in_independent_speeds(&[speeds.rates[k]])[0]))
+            .map(|k| (k, solved.express_in_independent_velocities(&[speeds.rates[k]])[0]))
             .collect();
     }
     let [motion, forces] =
-        [needed, inputs].map(|all| solved.project_forces(&solved.express_in_independent_speeds(&all)));
+        [needed, inputs].map(|all| solved.project_forces(&solved.express_in_independent_velocities(&all)));
     let residuals: Vec<Expr<'g>> = own.constraints.iter().filter_map(|c| c.residual).collect();
     let (replaced, rates): (Vec<usize>, Vec<Expr<'g>>) = rates.into_iter().unzip();
     let lists = [motion, forces, solved.values, rates, residuals];
@@ -149,21 +151,25 @@ fn choose_dependent_velocities<'g>(
 ) -> Option<Vec<usize>> {
     let (nc, nv) = (rows.len(), own.nv());
     let tape = Tape::new(&rows.concat());
-    let sampled_rows = |q: &[f64], seed: u64| -> Vec<Vec<f64>> {
+    let constraint_rows_at_configuration = |q: &[f64], seed: u64| -> Vec<Vec<f64>> {
         tape.evaluate_at(&|s| symbol_value_at_rest(s, q, seed))
             .chunks(nv.max(1))
             .map(<[f64]>::to_vec)
             .collect()
     };
-    let samples: Vec<Vec<Vec<f64>>> =
-        (0..SAMPLES).map(|seed| sampled_rows(&random_configuration(model, seed), seed)).collect();
-    let closed = sample_configurations(model, &Rows::new(model), &mut Diagnostics::new());
-    let closed: Vec<Vec<Vec<f64>>> = closed.iter().map(|(q, seed)| sampled_rows(q, *seed)).collect();
-    let have_full_rank = |columns: &[usize]| {
+    let samples: Vec<Vec<Vec<f64>>> = (0..SAMPLES)
+        .map(|seed| constraint_rows_at_configuration(&random_configuration(model, seed), seed))
+        .collect();
+    let closed =
+        sample_feasible_configurations(model, &CompiledConstraintRows::new(model), &mut Diagnostics::new());
+    let closed: Vec<Vec<Vec<f64>>> =
+        closed.iter().map(|(q, seed)| constraint_rows_at_configuration(q, *seed)).collect();
+    let columns_have_full_rank = |columns: &[usize]| {
         closed.iter().all(|rows| {
             let mut basis = OrthonormalRowBasis::default();
             rows.iter().for_each(|row| {
-                basis.add(&columns.iter().map(|k| row[*k]).collect::<Vec<f64>>(), INDEPENDENT);
+                basis
+                    .add_independent_row(&columns.iter().map(|k| row[*k]).collect::<Vec<f64>>(), INDEPENDENT);
             });
             basis.rank() == nc
         })
@@ -177,7 +183,7 @@ fn choose_dependent_velocities<'g>(
         let even = if even > 1.0 - SAME { 1.0 } else { even };
         let filled = columns.iter().map(|k| rows.iter().filter(|row| !row[*k].is_zero()).count()).sum();
         let better = best.as_ref().is_none_or(|((e, f), _)| even > *e || (even == *e && filled < *f));
-        if even > SAME && better && have_full_rank(&columns) {
+        if even > SAME && better && columns_have_full_rank(&columns) {
             best = Some(((even, filled), columns.clone()));
         }
         // Next choice in lexicographic order.
@@ -229,49 +235,49 @@ impl<'g> EliminatedMotion<'g> {
         dependent.sort_unstable();
         let independent: Vec<usize> = (0..model.nv()).filter(|k| !dependent.contains(k)).collect();
         let own: Matrix<'g> = rows.iter().map(|row| dependent.iter().map(|k| row[*k]).collect()).collect();
-        let inverse = inverse(model, &own)?;
-        let multiply_inverse_by_column = |column: &dyn Fn(usize) -> Expr<'g>| -> Vec<Expr<'g>> {
-            let dot_row_with_column = |row: &Vec<Expr<'g>>| {
+        let inverse = inverse_of_speed_matrix(model, &own)?;
+        let multiply_negative_inverse_by_column = |column: &dyn Fn(usize) -> Expr<'g>| -> Vec<Expr<'g>> {
+            let negative_row_column_product = |row: &Vec<Expr<'g>>| {
                 let terms = row.iter().enumerate().filter(|(_, e)| !e.is_zero());
                 terms.fold(g.zero(), |sum, (i, e)| sum - *e * column(i))
             };
-            inverse.iter().map(|row| shorten_expression(model, dot_row_with_column(row))).collect()
+            inverse.iter().map(|row| shorten_expression(model, negative_row_column_product(row))).collect()
         };
         let with_velocities_set_to_zero = |e: Expr<'g>| {
-            replace_all(&[e], &|s| {
+            substitute_symbols_in_all(&[e], &|s| {
                 matches!(Quantity::from_symbol(s), Quantity::Velocity(_)).then(|| g.zero())
             })[0]
         };
         // Motion that is driven in time also moves dependent velocities.
         let drift: Vec<Expr<'g>> =
             model.constraints.iter().map(|c| with_velocities_set_to_zero(c.rate)).collect();
-        let mut values = multiply_inverse_by_column(&|i| drift[i]);
+        let mut values = multiply_negative_inverse_by_column(&|i| drift[i]);
         let mut partial: Matrix<'g> = vec![Vec::new(); dependent.len()];
         for k in &independent {
-            let column = multiply_inverse_by_column(&|i| rows[i][*k]);
+            let column = multiply_negative_inverse_by_column(&|i| rows[i][*k]);
             for ((row, value), e) in partial.iter_mut().zip(&mut values).zip(column) {
                 row.push(e);
                 *value += e * Quantity::Velocity(*k).expr(g);
             }
         }
         let mut found = EliminatedMotion { independent, dependent, values, changes: Vec::new(), partial };
-        let rate_of_dependent_speed = |(value, row): (&Expr<'g>, &Vec<Expr<'g>>)| {
+        let rate_of_dependent_velocity = |(value, row): (&Expr<'g>, &Vec<Expr<'g>>)| {
             let start = time_derivative(model.configuration_space(), *value);
             let terms = found.independent.iter().zip(row);
             terms.fold(start, |sum, (k, e)| sum + *e * Quantity::Acceleration(*k).expr(g))
         };
         let changes: Vec<Expr<'g>> =
-            found.values.iter().zip(&found.partial).map(rate_of_dependent_speed).collect();
-        found.changes = found.express_in_independent_speeds(&changes);
+            found.values.iter().zip(&found.partial).map(rate_of_dependent_velocity).collect();
+        found.changes = found.express_in_independent_velocities(&changes);
         Some(found)
     }
 
     /// Expresses all velocities and accelerations in terms of the independent ones.
-    fn express_in_independent_speeds(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
-        let index_of_dependent_speed = |k: usize| self.dependent.iter().position(|d| *d == k);
-        replace_all(e, &|s| match Quantity::from_symbol(s) {
-            Quantity::Velocity(k) => Some(self.values[index_of_dependent_speed(k)?]),
-            Quantity::Acceleration(k) => Some(*self.changes.get(index_of_dependent_speed(k)?)?),
+    fn express_in_independent_velocities(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let index_of_dependent_velocity = |k: usize| self.dependent.iter().position(|d| *d == k);
+        substitute_symbols_in_all(e, &|s| match Quantity::from_symbol(s) {
+            Quantity::Velocity(k) => Some(self.values[index_of_dependent_velocity(k)?]),
+            Quantity::Acceleration(k) => Some(*self.changes.get(index_of_dependent_velocity(k)?)?),
             _ => None,
         })
     }
@@ -290,29 +296,33 @@ impl<'g> EliminatedMotion<'g> {
 pub fn format_kane_equations(model: &Model<'_>, kane: &KaneEquations) -> PrintedEquations {
     let rates = coordinate_rate_flags(model);
     let names = typeset_names_with_extra_names(model, &[]);
-    let name_of_symbol = |symbol: Symbol| name_and_derivative_order(model, &rates, symbol);
-    let primed_name = |symbol| name_with_primes(name_of_symbol(symbol));
-    let name_with_dots = |symbol| {
-        let (name, dots) = name_of_symbol(symbol);
-        (names.get(&name), dots)
+    let symbol_name_and_derivative_order = |symbol: Symbol| name_and_derivative_order(model, &rates, symbol);
+    let primed_name = |symbol| name_with_primes(symbol_name_and_derivative_order(symbol));
+    let typeset_name_and_dots = |symbol| {
+        let (name, dots) = symbol_name_and_derivative_order(symbol);
+        (names.typeset_name(&name), dots)
     };
-    let primed_rate_name = |k: usize| name_with_primes(joint_velocity_name_and_dots(model, k));
-    let lines = KaneLines::new(kane, Plain { name: &primed_name }, &primed_rate_name);
+    let primed_joint_velocity_name = |k: usize| name_with_primes(joint_velocity_name_and_dots(model, k));
+    let lines = KaneLines::new(kane, Plain { name: &primed_name }, &primed_joint_velocity_name);
     let wrapped_line = |text: &String| wrap_text(text, WIDTH, "    ") + "\n";
     let mut plain: String = lines.velocities.iter().map(wrapped_line).collect();
     plain += "\n";
     plain.extend(lines.motion.iter().map(wrapped_line));
     plain = plain + "\n" + &wrap_at_page_width(&legend_sentences(model, kane, &primed_name)) + "\n";
-    let rate_name_and_dots = |k: usize| {
+    let typeset_joint_velocity_and_dots = |k: usize| {
         let (name, dots) = joint_velocity_name_and_dots(model, k);
-        (names.get(&name), dots)
+        (names.typeset_name(&name), dots)
     };
-    let latex_rate_symbol =
-        |k: usize| Latex { name: &|_| rate_name_and_dots(k) }.symbol(Quantity::Velocity(k).symbol(), 1);
-    let latex = KaneLines::new(kane, Latex { name: &name_with_dots }, &latex_rate_symbol);
-    let mathml_rate_symbol =
-        |k: usize| MathMl { name: &|_| rate_name_and_dots(k) }.symbol(Quantity::Velocity(k).symbol(), 1);
-    let mathml = KaneLines::new(kane, MathMl { name: &name_with_dots }, &mathml_rate_symbol);
+    let latex_rate_symbol = |k: usize| {
+        Latex { name: &|_| typeset_joint_velocity_and_dots(k) }
+            .format_symbol_power(Quantity::Velocity(k).symbol(), 1)
+    };
+    let latex = KaneLines::new(kane, Latex { name: &typeset_name_and_dots }, &latex_rate_symbol);
+    let mathml_rate_symbol = |k: usize| {
+        MathMl { name: &|_| typeset_joint_velocity_and_dots(k) }
+            .format_symbol_power(Quantity::Velocity(k).symbol(), 1)
+    };
+    let mathml = KaneLines::new(kane, MathMl { name: &typeset_name_and_dots }, &mathml_rate_symbol);
     PrintedEquations {
         plain,
         latex: format_aligned(&[latex.velocities, latex.motion].concat()),
@@ -334,7 +344,11 @@ impl KaneLines {
         let of_speeds =
             kane.rates.iter().map(|(k, p)| format!("{} = {}", left(*k), writer.format_polynomial(p)));
         let dependent = kane.dependent.iter().map(|(k, p)| {
-            format!("{} = {}", style.symbol(Quantity::Velocity(*k).symbol(), 1), writer.format_polynomial(p))
+            format!(
+                "{} = {}",
+                style.format_symbol_power(Quantity::Velocity(*k).symbol(), 1),
+                writer.format_polynomial(p)
+            )
         });
         let sides = kane.motion.iter().zip(&kane.forces);
         let motion =

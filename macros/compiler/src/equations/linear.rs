@@ -25,7 +25,7 @@ mod rest;
 mod stability;
 mod written;
 
-use parts::{EquilibriumCoefficients, linear_equation_expressions, multiplier_symbol, rank_of_symbol};
+use parts::{EquilibriumCoefficients, expressions_to_linearise, multiplier_symbol, rank_of_symbol};
 
 pub use characteristic::CharacteristicPolynomial;
 pub use parts::deviation_symbol;
@@ -103,8 +103,8 @@ fn linearised_equation_coefficients<'g>(
     rest: &rest::EquilibriumValues<'g>,
 ) -> EquilibriumCoefficients<'g> {
     let (g, nv) = (model.graph, model.nv());
-    let rows = linear_equation_expressions(model, balance, at);
-    let derivatives = symbolic::force_derivatives(model, &rows);
+    let rows = expressions_to_linearise(model, balance, at);
+    let derivatives = symbolic::configuration_and_velocity_derivatives(model, &rows);
     let (mut by_deviation, mut by_rate) = (derivatives.by_q, derivatives.by_v);
     for (s, state) in at.states.iter().enumerate() {
         let mut by = DirectionalDerivative::with_respect_to(Quantity::Parameter(state.parameter).symbol(), g);

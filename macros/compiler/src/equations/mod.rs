@@ -2,7 +2,7 @@
 //! the mass matrix and bias forces of the recursive algorithms, which are already computed and need no
 //! adaptation for ball and free joints. A test shows that Lagrange's equations are the same polynomials.
 
-use crate::algebra::factor::remove_noise;
+use crate::algebra::factor::remove_rounding_noise;
 use crate::algebra::normal::NormalFormCache;
 use crate::algebra::polynomial::{Atom, AtomRank, Polynomial, Ring};
 use crate::algebra::trigonometry::simplify_trigonometry;
@@ -202,7 +202,7 @@ fn bias_of_equations<'g>(
 /// Returns the right sides of the equations of motion: generalized forces of inputs and multipliers.
 fn right_sides<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Expr<'g>> {
     let held = constraints::constraint_forces(model, &constraints::multiplier_argument_symbols(model));
-    let forces = forces::generalized_forces(model, joints);
+    let forces = forces::generalized_forces_of_inputs(model, joints);
     forces.into_iter().zip(held).map(|(force, held)| force + held).collect()
 }
 
@@ -267,7 +267,7 @@ impl Simplifier {
     }
 
     fn shorten_polynomial(&mut self, p: &Polynomial) -> Option<Polynomial> {
-        let p = remove_noise(&self.ring, p);
+        let p = remove_rounding_noise(&self.ring, p);
         let mut p = simplify_trigonometry(&mut self.ring, &p)?;
         for quaternion in &self.quaternions {
             p = simplify_on_unit_sphere(&mut self.ring, &p, quaternion)?;

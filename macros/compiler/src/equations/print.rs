@@ -2,7 +2,7 @@
 
 use crate::algebra::common::FactorScope;
 use crate::algebra::factor::items_of_polynomial;
-use crate::algebra::item::{Item, PrintOrder};
+use crate::algebra::item::{PrintOrder, PrintedTerm};
 use crate::algebra::polynomial::{Atom, Monomial, Polynomial, Ring, Wave};
 use crate::expr::Expr;
 use crate::expr::node::{Node, Symbol};
@@ -20,7 +20,7 @@ pub use mathml::MathMl;
 pub use names::SymbolName;
 pub use style::{Plain, PrintedEquations, Style};
 
-use style::{Argument, Number, PrintedFactor};
+use style::{PrintedArgument, PrintedFactor, PrintedNumber};
 
 impl fmt::Debug for Expr<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -108,24 +108,26 @@ impl<'a, S: Style> PolynomialWriter<'a, S> {
         self.format_sum(&items_of_polynomial(self.ring, &self.order, p, FactorScope::None))
     }
 
-    fn format_sum(&self, items: &[Item]) -> String {
-        self.join_signed_terms(items.iter().map(|item| (item.coefficient < 0.0, self.format_item(item))))
+    fn format_sum(&self, items: &[PrintedTerm]) -> String {
+        self.join_signed_terms(
+            items.iter().map(|item| (item.coefficient < 0.0, self.format_term_of_sum(item))),
+        )
     }
 
     /// Joins terms, given as sign (true if negative) and text, to a sum.
     fn join_signed_terms(&self, parts: impl Iterator<Item = (bool, String)>) -> String {
         let mut out = String::new();
         for (negative, text) in parts {
-            out.push_str(self.style.sign(out.is_empty(), negative));
+            out.push_str(self.style.sign_before_term(out.is_empty(), negative));
             out.push_str(&text);
         }
-        if out.is_empty() { self.style.number(&Number::ZERO) } else { out }
+        if out.is_empty() { self.style.format_number(&PrintedNumber::ZERO) } else { out }
     }
 
-    fn format_item(&self, item: &Item) -> String {
+    fn format_term_of_sum(&self, item: &PrintedTerm) -> String {
         let sums =
             item.sums.iter().map(|sum| self.sum_power_as_factor(self.format_sum(&sum.items), sum.power));
-        let constant = item.sums.iter().all(|sum| self.order.is_constant(&sum.items));
+        let constant = item.sums.iter().all(|sum| self.order.contains_only_parameters(&sum.items));
         self.format_product(item.coefficient, item.factor, sums.collect(), constant)
     }
 
@@ -134,7 +136,7 @@ impl<'a, S: Style> PolynomialWriter<'a, S> {
         if power == 1 {
             PrintedFactor::Sum(sum)
         } else {
-            PrintedFactor::Single(self.style.power(&sum, power))
+            PrintedFactor::Single(self.style.format_power_of_sum(&sum, power))
         }
     }
 
@@ -153,9 +155,9 @@ impl<'a, S: Style> PolynomialWriter<'a, S> {
         self.format_factors(front, &mut factors, &mut divisors);
         factors.extend(sums);
         self.format_factors(m.clear_mask(front), &mut factors, &mut divisors);
-        let number = Number::classify_number(coefficient.abs());
-        let number = (number != Number::ONE || factors.is_empty()).then_some(number);
-        self.style.product(number, &factors, &divisors)
+        let number = PrintedNumber::classify_number(coefficient.abs());
+        let number = (number != PrintedNumber::ONE || factors.is_empty()).then_some(number);
+        self.style.format_quotient_of_products(number, &factors, &divisors)
     }
 
     fn format_factors(
@@ -182,9 +184,10 @@ impl<'a, S: Style> PolynomialWriter<'a, S> {
     }
 
     fn format_atom(&self, atom: &Atom, power: u8) -> String {
-        let format_call = |name, arguments: &[Argument]| self.style.call(name, power, arguments);
+        let format_call =
+            |name, arguments: &[PrintedArgument]| self.style.format_function_call(name, power, arguments);
         match atom {
-            Atom::Symbol(s) => self.style.symbol(*s, power),
+            Atom::Symbol(s) => self.style.format_symbol_power(*s, power),
             Atom::Wave(w) => format_call(if w.cosine { "cos" } else { "sin" }, &[self.format_angle(w)]),
             Atom::Call(f, p) => format_call(f.function_name(), &[self.format_argument(p)]),
             Atom::Atan2(y, x) => format_call("atan2", &[self.format_argument(y), self.format_argument(x)]),
@@ -197,25 +200,28 @@ impl<'a, S: Style> PolynomialWriter<'a, S> {
             }
             Atom::Inverse(p) => {
                 let divisor = PrintedFactor::Sum(self.format_polynomial(p));
-                self.style.power(&self.style.product(Some(Number::ONE), &[], &[divisor]), power)
+                self.style.format_power_of_sum(
+                    &self.style.format_quotient_of_products(Some(PrintedNumber::ONE), &[], &[divisor]),
+                    power,
+                )
             }
         }
     }
 
-    fn format_argument(&self, p: &Polynomial) -> Argument {
+    fn format_argument(&self, p: &Polynomial) -> PrintedArgument {
         let lone = matches!(p.terms.as_slice(), [t] if self.is_single_symbol(t.coefficient, t.monomial));
-        Argument { text: self.format_polynomial(p), lone }
+        PrintedArgument { text: self.format_polynomial(p), lone }
     }
 
     /// Formats the argument of a wave, with its angles in the order of the ring.
-    fn format_angle(&self, wave: &Wave) -> Argument {
+    fn format_angle(&self, wave: &Wave) -> PrintedArgument {
         let angles = self.ring.angles.iter().zip(wave.angle).filter(|(_, n)| *n != 0);
         let parts: Vec<(f64, Monomial)> =
             angles.map(|(angle, n)| (angle.coefficient * f64::from(n), angle.monomial)).collect();
         let text = self.join_signed_terms(
             parts.iter().map(|(c, m)| (*c < 0.0, self.format_product(*c, *m, Vec::new(), true))),
         );
-        Argument { text, lone: matches!(parts.as_slice(), [(c, m)] if self.is_single_symbol(*c, *m)) }
+        PrintedArgument { text, lone: matches!(parts.as_slice(), [(c, m)] if self.is_single_symbol(*c, *m)) }
     }
 
     fn is_single_symbol(&self, coefficient: f64, m: Monomial) -> bool {

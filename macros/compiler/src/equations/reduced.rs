@@ -69,7 +69,7 @@ pub fn routh_equations<'g>(
     let others: Vec<usize> = (0..model.nv()).filter(|k| !cyclic.contains(k)).collect();
     let bias =
         replace_velocities(&rnea::inverse_dynamics(model, joints, &velocity_symbols(model), None), &all);
-    let inputs = replace_velocities(&forces::generalized_forces(model, joints), &all);
+    let inputs = replace_velocities(&forces::generalized_forces_of_inputs(model, joints), &all);
     let a = acceleration_symbols(model);
     let dot_product =
         |m: &[Expr<'g>], a: &[Expr<'g>]| m.iter().zip(a).fold(g.zero(), |sum, (m, a)| sum + *m * *a);
@@ -103,14 +103,14 @@ pub fn routh_equations<'g>(
         .map(|list| list.iter().map(|p| short.shorten_polynomial(p)).collect::<Option<Vec<_>>>())
         .collect::<Option<Vec<_>>>()?
         .into_iter();
-    let mut next = || found.next().unwrap_or_default();
+    let mut next_polynomials = || found.next().unwrap_or_default();
     Some(ReducedRouthEquations {
-        routhian: next().pop()?,
-        motion: next(),
-        forces: next(),
-        velocity: next(),
-        momentum_rate: next(),
-        determinants: next(),
+        routhian: next_polynomials().pop()?,
+        motion: next_polynomials(),
+        forces: next_polynomials(),
+        velocity: next_polynomials(),
+        momentum_rate: next_polynomials(),
+        determinants: next_polynomials(),
         ring: short.ring,
         cyclic,
     })
@@ -125,7 +125,7 @@ pub fn format_routh_equations(model: &Model<'_>, reduced: &ReducedRouthEquations
     let all = typeset_names_with_extra_names(model, &[momenta.clone(), inertias.clone()].concat());
     let index_among_cyclic = |k: usize| reduced.cyclic.iter().position(|c| *c == k);
     // Accelerations of cyclic coordinates do not occur: their symbols represent the rates of the momenta.
-    let name_of_symbol = |symbol: Symbol| match Quantity::from_symbol(symbol) {
+    let symbol_name_and_derivative_order = |symbol: Symbol| match Quantity::from_symbol(symbol) {
         Quantity::Momentum(c) => (momenta[c].clone(), 0),
         Quantity::Acceleration(k) if index_among_cyclic(k).is_some() => {
             (index_among_cyclic(k).map_or(String::new(), |c| momenta[c].clone()), 1)
@@ -133,10 +133,10 @@ pub fn format_routh_equations(model: &Model<'_>, reduced: &ReducedRouthEquations
         Quantity::Prepared(k) => (inertias[k].clone(), 0),
         _ => name_and_derivative_order(model, &rates, symbol),
     };
-    let primed_name = |symbol| name_with_primes(name_of_symbol(symbol));
-    let name_with_dots = |symbol| {
-        let (name, dots) = name_of_symbol(symbol);
-        (all.get(&name), dots)
+    let primed_name = |symbol| name_with_primes(symbol_name_and_derivative_order(symbol));
+    let typeset_name_and_dots = |symbol| {
+        let (name, dots) = symbol_name_and_derivative_order(symbol);
+        (all.typeset_name(&name), dots)
     };
     let lines = routh_equation_lines(reduced, Plain { name: &primed_name });
     let wrapped_line = |text: &String| wrap_text(text, WIDTH, "    ") + "\n";
@@ -157,10 +157,10 @@ pub fn format_routh_equations(model: &Model<'_>, reduced: &ReducedRouthEquations
     );
     about += &determinants_sentence(&inertias);
     plain = plain + "\n" + &wrap_at_page_width(&about) + "\n";
-    let mut lines = self::routh_equation_lines(reduced, Latex { name: &name_with_dots });
+    let mut lines = self::routh_equation_lines(reduced, Latex { name: &typeset_name_and_dots });
     lines[0] = format!("\\mathcal{{R}} = {}", lines[0]);
     let latex = format_aligned(&lines);
-    lines = self::routh_equation_lines(reduced, MathMl { name: &name_with_dots });
+    lines = self::routh_equation_lines(reduced, MathMl { name: &typeset_name_and_dots });
     lines[0] = format!("<mi>R</mi> = {}", lines[0]);
     PrintedEquations { plain, latex, mathml: format_equations_as_html(&lines) }
 }
@@ -181,7 +181,11 @@ fn routh_equation_lines<S: Style + Copy>(reduced: &ReducedRouthEquations, style:
         cyclic_coordinates().map(Quantity::Acceleration).zip(&reduced.momentum_rate).filter(|_| moved);
     let determinants = (0..).map(determinant_symbol).zip(&reduced.determinants);
     for (left, right) in velocities.chain(momenta).chain(determinants) {
-        lines.push(format!("{} = {}", style.symbol(left.symbol(), 1), writer.format_polynomial(right)));
+        lines.push(format!(
+            "{} = {}",
+            style.format_symbol_power(left.symbol(), 1),
+            writer.format_polynomial(right)
+        ));
     }
     lines
 }

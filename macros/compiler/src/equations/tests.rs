@@ -24,24 +24,25 @@ mod routh;
 use mechanisms::*;
 use reading::text::evaluate_text;
 
-fn with_model<R>(gravity: &str, item: &str, f: impl for<'g> FnOnce(Model<'g>) -> R) -> R {
+fn call_with_parsed_model<R>(gravity: &str, item: &str, f: impl for<'g> FnOnce(Model<'g>) -> R) -> R {
     let mut cx = Diagnostics::new();
     let arguments = format!("gravity = {gravity}").parse().unwrap();
-    let source = crate::read_source(arguments, item.parse().unwrap(), Path::new(""), &mut cx);
+    let source = crate::parse_source_and_import(arguments, item.parse().unwrap(), Path::new(""), &mut cx);
     let (graph, source) = (Graph::new(), source.expect("a struct"));
     let model = crate::resolve::build_model(&source.mechanism.description, &graph, &mut cx);
-    f(model.unwrap_or_else(|| panic!("{:?}", cx.messages())))
+    f(model.unwrap_or_else(|| panic!("{:?}", cx.full_message_texts())))
 }
 
 fn equations_text(gravity: &str, item: &str) -> String {
-    with_model(gravity, item, |model| crate::equations_as_text(&model))
+    call_with_parsed_model(gravity, item, |model| crate::equations_as_text(&model))
 }
 
 /// Returns a function that assigns a random number to every symbol. Quaternions have unit length.
 fn random_symbol_values(model: &Model<'_>, seed: u64) -> impl Fn(Symbol) -> f64 + use<> {
     let mut r = Random(seed * 2 + 1);
-    let mut numbers =
-        |n: usize| -> Vec<f64> { (0..n).map(|_| r.number_below(2000) as f64 / 1000.0 - 1.0).collect() };
+    let mut numbers = |n: usize| -> Vec<f64> {
+        (0..n).map(|_| r.random_number_below(2000) as f64 / 1000.0 - 1.0).collect()
+    };
     let parameters: Vec<f64> = numbers(model.parameters.len()).iter().map(|p| p + 1.5).collect();
     let mut q = numbers(model.nq());
     for first in model.charts.iter().filter_map(Chart::first_quaternion_index) {
@@ -76,16 +77,16 @@ fn value_lookup_by_name<'a>(
     at: &'a dyn Fn(Symbol) -> f64,
 ) -> impl Fn(&str) -> f64 + 'a {
     let rates = written::coordinate_rate_flags(model);
-    let indexed_quantities = |n: usize, quantity: fn(usize) -> Quantity| (0..n).map(quantity);
-    let quantities = indexed_quantities(model.parameters.len(), Quantity::Parameter)
-        .chain(indexed_quantities(model.nq(), Quantity::Configuration))
-        .chain(indexed_quantities(model.nv(), Quantity::Velocity))
-        .chain(indexed_quantities(model.nv(), Quantity::Acceleration))
-        .chain(indexed_quantities(model.nu(), Quantity::Input))
-        .chain(indexed_quantities(model.constraints.len(), |k| {
+    let quantities_with_indices_below = |n: usize, quantity: fn(usize) -> Quantity| (0..n).map(quantity);
+    let quantities = quantities_with_indices_below(model.parameters.len(), Quantity::Parameter)
+        .chain(quantities_with_indices_below(model.nq(), Quantity::Configuration))
+        .chain(quantities_with_indices_below(model.nv(), Quantity::Velocity))
+        .chain(quantities_with_indices_below(model.nv(), Quantity::Acceleration))
+        .chain(quantities_with_indices_below(model.nu(), Quantity::Input))
+        .chain(quantities_with_indices_below(model.constraints.len(), |k| {
             Quantity::Given(SuppliedQuantity::Multiplier, k)
         }))
-        .chain(indexed_quantities(model.nv(), Quantity::Force))
+        .chain(quantities_with_indices_below(model.nv(), Quantity::Force))
         .chain([Quantity::Time]);
     let named: Vec<(String, Symbol)> = quantities
         .map(|q| {
@@ -133,7 +134,7 @@ fn check_values_of_printed_equations(model: &Model<'_>, e: &EquationsOfMotion) {
 
 /// Compares motion, forces, constraints and Lagrangian with the lowered programs of the recursive algorithms,
 /// and the motion with Lagrange's equations.
-fn check_equations(model: &Model<'_>) {
+fn check_against_recursive_algorithms(model: &Model<'_>) {
     let joints = crate::kinematics::joints_of_model(model);
     let mass = crba::mass_matrix(model, &joints);
     let e = derive(model, &joints, &mass, None, &Limits::READABLE).expect("small");
@@ -163,12 +164,12 @@ fn check_equations(model: &Model<'_>) {
 #[test]
 fn printed_normal_forms_equal_generated_functions() {
     for item in [CART_POLE, NUMBERS] {
-        with_model("-9.81 * z", item, |model| check_equations(&model));
-        with_model("-9.81 * y", item, |model| check_equations(&model));
+        call_with_parsed_model("-9.81 * z", item, |model| check_against_recursive_algorithms(&model));
+        call_with_parsed_model("-9.81 * y", item, |model| check_against_recursive_algorithms(&model));
     }
     for item in [DOUBLE_PENDULUM, GYROSCOPE, SHAFT, SPHERICAL, CHAIN, BALL, TRIPLE, ARM, WAGON] {
-        with_model("-g * z", item, |model| check_equations(&model));
-        with_model("-g * y", item, |model| check_equations(&model));
+        call_with_parsed_model("-g * z", item, |model| check_against_recursive_algorithms(&model));
+        call_with_parsed_model("-g * y", item, |model| check_against_recursive_algorithms(&model));
     }
 }
 
@@ -183,13 +184,13 @@ fn set_link_placement<'g>(model: &mut Model<'g>, link: usize, place: [Expr<'g>; 
 /// Describes each rod of a double pendulum by its angle from the vertical.
 #[test]
 fn double_pendulum_in_absolute_angles_prints_correctly() {
-    let text = with_model("-g * y", DOUBLE_PENDULUM, |mut model| {
+    let text = call_with_parsed_model("-g * y", DOUBLE_PENDULUM, |mut model| {
         let g = model.graph;
         let [a, b] = [0, 1].map(|k| Quantity::Configuration(k).expr(g));
         let length = Quantity::Parameter(3).expr(g);
         set_link_placement(&mut model, 1, [length * a.sin(), -(length * a.cos()), g.zero()], b);
         model.inputs.clear();
-        check_equations(&model);
+        check_against_recursive_algorithms(&model);
         crate::equations_as_text(&model)
     });
     let first = "l1 (l1 (1/3 m1 + m2) shoulder''
@@ -201,7 +202,7 @@ fn double_pendulum_in_absolute_angles_prints_correctly() {
 /// A bead on a hoop that rotates about the vertical at a prescribed speed.
 #[test]
 fn driven_hoop_prints_time_dependent_equations() {
-    let text = with_model("-g * z", HOOP, |mut model| {
+    let text = call_with_parsed_model("-g * z", HOOP, |mut model| {
         model.parameters = ["g", "m", "radius", "speed"].map(String::from).to_vec();
         let g = model.graph;
         let [radius, speed] = [2, 3].map(|k| Quantity::Parameter(k).expr(g));
@@ -213,7 +214,7 @@ fn driven_hoop_prints_time_dependent_equations() {
             [out * turn.cos(), out * turn.sin(), -(radius * theta.cos())],
             g.zero(),
         );
-        check_equations(&model);
+        check_against_recursive_algorithms(&model);
         crate::equations_as_text(&model)
     });
     let expected = "\
@@ -244,7 +245,7 @@ fn equation_length_decides_what_is_printed() {
         SPHERE.to_string(),
         DISK.to_string(),
     ] {
-        with_model("-g * z", &item, |model| check_equations(&model));
+        call_with_parsed_model("-g * z", &item, |model| check_against_recursive_algorithms(&model));
     }
 }
 
@@ -378,20 +379,23 @@ fn check_hamiltons_equations(model: &Model<'_>) -> String {
     let power = momenta.iter().zip(&v).fold(model.graph.zero(), |sum, (p, v)| sum + *p * *v);
     let mut expected = vec![power - kinetic + energy::potential_energy(model, &joints)];
     expected.extend(&v);
-    let rate = crate::mechanics::momentum::momentum_rate(model, &joints, &v);
-    let inputs = forces::generalized_forces(model, &joints);
+    let rate = crate::mechanics::momentum::momentum_rate_without_inputs(model, &joints, &v);
+    let inputs = forces::generalized_forces_of_inputs(model, &joints);
     expected.extend(rate.into_iter().zip(inputs).map(|(rate, input)| rate + input));
     for seed in 1..10 {
         let symbol = random_symbol_values(model, seed);
         let p = eval(&momenta, &symbol);
         // Determinants contain no other determinants, but the ring evaluates all of its atoms.
-        let value_with_unit_momenta = |s: Symbol| match Quantity::from_symbol(s) {
+        let symbol_value_with_unit_momenta = |s: Symbol| match Quantity::from_symbol(s) {
             Quantity::Momentum(_) | Quantity::Prepared(_) => 1.0,
             _ => symbol(s),
         };
-        let determinants: Vec<f64> =
-            c.determinants.iter().map(|d| c.ring.evaluate_polynomial(d, &value_with_unit_momenta)).collect();
-        let symbol_value = |s: Symbol| match Quantity::from_symbol(s) {
+        let determinants: Vec<f64> = c
+            .determinants
+            .iter()
+            .map(|d| c.ring.evaluate_polynomial(d, &symbol_value_with_unit_momenta))
+            .collect();
+        let symbol_value_at_momenta = |s: Symbol| match Quantity::from_symbol(s) {
             Quantity::Momentum(k) => p[k],
             Quantity::Prepared(k) => determinants[k],
             Quantity::Velocity(_) | Quantity::Acceleration(_) => panic!("a velocity in Hamilton's form"),
@@ -399,7 +403,7 @@ fn check_hamiltons_equations(model: &Model<'_>) -> String {
         };
         let all = [&c.hamiltonian].into_iter().chain(&c.velocity).chain(&c.momentum_rate);
         let found: Vec<f64> =
-            all.map(|polynomial| c.ring.evaluate_polynomial(polynomial, &symbol_value)).collect();
+            all.map(|polynomial| c.ring.evaluate_polynomial(polynomial, &symbol_value_at_momenta)).collect();
         assert_near(&found, &eval(&expected, &symbol), &model.name);
     }
     let written = format_canonical_equations(model, &c);
@@ -409,7 +413,7 @@ fn check_hamiltons_equations(model: &Model<'_>) -> String {
 
 #[test]
 fn hamiltons_equations_equal_generated_functions() {
-    let text = with_model("-9.81 * y", CART_POLE, |model| check_hamiltons_equations(&model));
+    let text = call_with_parsed_model("-9.81 * y", CART_POLE, |model| check_hamiltons_equations(&model));
     for line in [
         "rail' = pole_mass pole_length (1/3 pole_length p_rail + 1/2 p_hinge cos(hinge))/D\n",
         "hinge' = (p_hinge (cart_mass + pole_mass) + 1/2 pole_mass pole_length p_rail cos(hinge))/D\n",
@@ -418,13 +422,13 @@ fn hamiltons_equations_equal_generated_functions() {
         assert!(text.contains(line), "{text}");
     }
     for item in [DOUBLE_PENDULUM, GYROSCOPE, SPHERICAL, BALL, FREE, TRIPLE, ARM] {
-        with_model("-g * z", item, |model| check_hamiltons_equations(&model));
-        with_model("-g * y", item, |model| check_hamiltons_equations(&model));
+        call_with_parsed_model("-g * z", item, |model| check_hamiltons_equations(&model));
+        call_with_parsed_model("-g * y", item, |model| check_hamiltons_equations(&model));
     }
     // Euler's equations in terms of momenta.
-    let text = with_model("-g * z", FREE, |model| check_hamiltons_equations(&model));
+    let text = call_with_parsed_model("-g * z", FREE, |model| check_hamiltons_equations(&model));
     assert!(text.contains("p_pose.wx' = p_pose.wy p_pose.wz (1/c - 1/b)\n"), "{text}");
-    let text = with_model("-g * z", BALL, |model| check_hamiltons_equations(&model));
+    let text = call_with_parsed_model("-g * z", BALL, |model| check_hamiltons_equations(&model));
     assert!(text.contains("p_tip.wz' = 0\n") && !text.contains("D is"), "{text}");
 }
 
@@ -463,7 +467,7 @@ fn long_equations_are_printed_on_request() {
         #[body(mass = m, com = 0.1 * z, inertia = cuboid(m, 0.2, 0.1, 0.3))] d: Body,
         #[joint(b.at(0.8 * x) -> c, about = z)] three: Pin,
         #[joint(c.at(0.6 * x) -> d, about = x)] four: Pin }";
-    with_model("-g * z", arm, |model| {
+    call_with_parsed_model("-g * z", arm, |model| {
         let joints = crate::kinematics::joints_of_model(&model);
         let mass = crba::mass_matrix(&model, &joints);
         assert!(derive(&model, &joints, &mass, None, &Limits::READABLE).is_none());

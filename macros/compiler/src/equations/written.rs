@@ -4,7 +4,7 @@ use super::{CanonicalEquations, EquationsOfMotion, determinant_symbol};
 use crate::diag::join_names_with_and;
 use crate::equations::print::aligned::format_aligned;
 use crate::equations::print::mathml::format_equations_as_html;
-use crate::equations::print::names::{Names, name_with_primes};
+use crate::equations::print::names::{TypesetNames, name_with_primes};
 use crate::equations::print::{Latex, MathMl, Plain, PolynomialWriter, PrintedEquations, Style, wrap_text};
 use crate::expr::Symbol;
 use crate::mechanism::{Chart, Model, Quantity, SuppliedQuantity};
@@ -18,7 +18,7 @@ const PAGE: usize = 92;
 pub fn format_equations(model: &Model<'_>, equations: &EquationsOfMotion) -> PrintedEquations {
     let rates = coordinate_rate_flags(model);
     let (latex, mathml) = typeset_equations(model, equations, &rates);
-    PrintedEquations { plain: plain_text(model, equations, &rates), latex, mathml }
+    PrintedEquations { plain: plain_text_of_equations(model, equations, &rates), latex, mathml }
 }
 
 /// Printed lines: the Lagrangian, and the left and right side of the equation of every velocity.
@@ -40,10 +40,10 @@ impl LagrangeLines {
         }
     }
 
-    /// Returns the printed equations: the Lagrangian, the joint velocities in terms of generalized speeds, and
-    /// the equations of motion. `lagrangian` is the symbol of the Lagrangian, and `left(k)` that of joint
+    /// Returns the printed equations: the Lagrangian, the joint velocities in terms of generalized speeds,
+    /// and the equations of motion. `lagrangian` is the symbol of the Lagrangian, and `left(k)` that of joint
     /// velocity `k`.
-    fn equation_lines(&self, lagrangian: &str, left: &dyn Fn(usize) -> String) -> Vec<String> {
+    fn lagrangian_and_equation_lines(&self, lagrangian: &str, left: &dyn Fn(usize) -> String) -> Vec<String> {
         let mut all = vec![format!("{lagrangian} = {}", self.lagrangian)];
         all.extend(self.rates.iter().map(|(k, rate)| format!("{} = {rate}", left(*k))));
         all.extend(self.motion.iter().map(|(motion, force)| format!("{motion} = {force}")));
@@ -52,7 +52,7 @@ impl LagrangeLines {
 }
 
 /// Returns the plain text: the Lagrangian, an equation for every velocity, and a legend.
-fn plain_text(model: &Model<'_>, equations: &EquationsOfMotion, rates: &[bool]) -> String {
+fn plain_text_of_equations(model: &Model<'_>, equations: &EquationsOfMotion, rates: &[bool]) -> String {
     let primed_name = |symbol| name_with_primes(name_and_derivative_order(model, rates, symbol));
     let lines = LagrangeLines::new(equations, Plain { name: &primed_name });
     let wrapped_line = |text: &str| wrap_text(text, WIDTH, "    ") + "\n";
@@ -81,16 +81,16 @@ pub fn format_canonical_equations(model: &Model<'_>, canonical: &CanonicalEquati
     let determinants = determinant_names(model, canonical.determinants.len());
     let all = typeset_names_with_extra_names(model, &[momenta.clone(), determinants.clone()].concat());
     // Accelerations do not occur: their symbols represent the rates of the momenta.
-    let symbol_name_and_order = |symbol| match Quantity::from_symbol(symbol) {
+    let symbol_name_and_derivative_order = |symbol| match Quantity::from_symbol(symbol) {
         Quantity::Momentum(k) => (momenta[k].clone(), 0),
         Quantity::Acceleration(k) => (momenta[k].clone(), 1),
         Quantity::Prepared(k) => (determinants[k].clone(), 0),
         _ => name_and_derivative_order(model, &rates, symbol),
     };
-    let primed_name = |symbol| name_with_primes(symbol_name_and_order(symbol));
+    let primed_name = |symbol| name_with_primes(symbol_name_and_derivative_order(symbol));
     let typeset_name_and_dots = |symbol| {
-        let (name, dots) = symbol_name_and_order(symbol);
-        (all.get(&name), dots)
+        let (name, dots) = symbol_name_and_derivative_order(symbol);
+        (all.typeset_name(&name), dots)
     };
     let lines = canonical_lines(canonical, Plain { name: &primed_name });
     let wrapped_line = |text: &String| wrap_text(text, WIDTH, "    ") + "\n";
@@ -149,7 +149,11 @@ fn canonical_lines<S: Style + Copy>(canonical: &CanonicalEquations, style: S) ->
     let momenta = (0..).map(Quantity::Acceleration).zip(&canonical.momentum_rate);
     let determinants = (0..).map(determinant_symbol).zip(&canonical.determinants);
     for (left, right) in velocities.chain(momenta).chain(determinants) {
-        lines.push(format!("{} = {}", style.symbol(left.symbol(), 1), writer.format_polynomial(right)));
+        lines.push(format!(
+            "{} = {}",
+            style.format_symbol_power(left.symbol(), 1),
+            writer.format_polynomial(right)
+        ));
     }
     lines
 }
@@ -177,40 +181,42 @@ fn typeset_equations(model: &Model<'_>, equations: &EquationsOfMotion, rates: &[
     let names = typeset_names(model);
     let typeset_name_and_dots = |symbol| {
         let (name, dots) = name_and_derivative_order(model, rates, symbol);
-        (names.get(&name), dots)
+        (names.typeset_name(&name), dots)
     };
-    let rate_name_and_dots = |k: usize| {
+    let typeset_joint_velocity_and_dots = |k: usize| {
         let (name, dots) = joint_velocity_name_and_dots(model, k);
-        (names.get(&name), dots)
+        (names.typeset_name(&name), dots)
     };
     let (energy, of_mathml) = match equations.without_forces {
         true => ("T", "<mi>T</mi>"),
         false => ("\\mathcal{L}", "<mi>L</mi>"),
     };
     let latex = LagrangeLines::new(equations, Latex { name: &typeset_name_and_dots })
-        .equation_lines(energy, &|k| {
-            Latex { name: &|_| rate_name_and_dots(k) }.symbol(Quantity::Velocity(k).symbol(), 1)
+        .lagrangian_and_equation_lines(energy, &|k| {
+            Latex { name: &|_| typeset_joint_velocity_and_dots(k) }
+                .format_symbol_power(Quantity::Velocity(k).symbol(), 1)
         });
     let mathml = LagrangeLines::new(equations, MathMl { name: &typeset_name_and_dots })
-        .equation_lines(of_mathml, &|k| {
-            MathMl { name: &|_| rate_name_and_dots(k) }.symbol(Quantity::Velocity(k).symbol(), 1)
+        .lagrangian_and_equation_lines(of_mathml, &|k| {
+            MathMl { name: &|_| typeset_joint_velocity_and_dots(k) }
+                .format_symbol_power(Quantity::Velocity(k).symbol(), 1)
         });
     (format_aligned(&latex), format_equations_as_html(&mathml))
 }
 
 /// Returns the typeset names of all symbols of a mechanism, which are unambiguous.
-fn typeset_names(model: &Model<'_>) -> Names {
+fn typeset_names(model: &Model<'_>) -> TypesetNames {
     typeset_names_with_extra_names(model, &[])
 }
 
 /// Returns the typeset names of all symbols of a mechanism and of other names, which are unambiguous.
-pub(super) fn typeset_names_with_extra_names(model: &Model<'_>, others: &[String]) -> Names {
+pub(super) fn typeset_names_with_extra_names(model: &Model<'_>, others: &[String]) -> TypesetNames {
     let velocities =
         model.velocities.iter().chain(model.speeds.iter().flat_map(|s| &s.velocities)).map(|(name, _)| name);
     let inputs = model.inputs.iter().map(|(name, _)| name);
     let multipliers: Vec<String> = (1..=model.constraints.len()).map(|k| format!("lambda{k}")).collect();
     let names = model.parameters.iter().chain(&model.configuration).chain(velocities).chain(inputs);
-    Names::new(names.chain(&multipliers).chain(others).map(String::as_str))
+    TypesetNames::new(names.chain(&multipliers).chain(others).map(String::as_str))
 }
 
 /// Returns for each velocity whether it is the rate of a coordinate of the same name.

@@ -2,7 +2,7 @@
 //! constants. All arguments are read before the first result is written, so that results may overwrite
 //! arguments.
 
-use super::pieces::{Piece, Statement};
+use super::pieces::{CExpression, Statement};
 use super::tokens::c_numeric_literal;
 use crate::catalogue::Argument;
 use crate::expr::{Extreme, Function as Elementary, Lookup, Symbol};
@@ -16,7 +16,7 @@ const LINE: usize = 72;
 const TOGETHER: usize = 4;
 
 /// Map from the index of an output to its assignment target; `None` for outputs that are not stored.
-pub type Places<'a> = &'a dyn Fn(usize) -> Option<String>;
+pub type OutputTargets<'a> = &'a dyn Fn(usize) -> Option<String>;
 
 /// Names that the body of a C function may use.
 pub struct Scope<'a> {
@@ -34,28 +34,33 @@ pub struct Scope<'a> {
 /// Name in place of a value that does not exist. Code that contains it is refused.
 pub const MISSING: &str = "lw_missing";
 
-struct Writer<'a> {
+struct CBodyWriter<'a> {
     program: &'a Program,
     scope: &'a Scope<'a>,
     statements: Vec<Statement>,
     /// Expression of each instruction that is inlined; `None` for the other instructions.
-    pieces: Vec<Option<Piece>>,
+    pieces: Vec<Option<CExpression>>,
     /// Arguments and parameters that are already local constants, if each is read before its first use.
     read: Vec<Symbol>,
 }
 
 /// Writes a program: input values, statements, and assignments of the results. Returns the expression of the
 /// first result, for functions that return it.
-pub fn write_program(out: &mut String, program: &Program, scope: &Scope<'_>, places: Places<'_>) -> String {
+pub fn write_program(
+    out: &mut String,
+    program: &Program,
+    scope: &Scope<'_>,
+    places: OutputTargets<'_>,
+) -> String {
     let pieces = vec![None; program.instructions.len()];
-    let mut w = Writer { program, scope, statements: Vec::new(), pieces, read: Vec::new() };
+    let mut w = CBodyWriter { program, scope, statements: Vec::new(), pieces, read: Vec::new() };
     if scope.is_late {
         w.write_instructions_with_late_inputs();
     } else {
         write_input_bindings(out, program, scope);
         w.write_instructions();
     }
-    let outputs: Vec<Piece> = program.outputs.iter().map(|o| w.operand_text(*o)).collect();
+    let outputs: Vec<CExpression> = program.outputs.iter().map(|o| w.operand_text(*o)).collect();
     write_statements(out, &w.statements, &outputs, places);
     outputs.into_iter().next().unwrap_or_default().text
 }
@@ -76,8 +81,10 @@ fn argument_constant_definition(symbol: Symbol, scope: &Scope<'_>) -> String {
             format!("    const double {name} = self->{};\n", scope.parameters[k])
         }
         (_, Some(name)) => {
-            let found =
-                scope.arguments.iter().find_map(|a| a.index(quantity).map(|k| (a.argument_name(), k)));
+            let found = scope
+                .arguments
+                .iter()
+                .find_map(|a| a.index_of_quantity(quantity).map(|k| (a.argument_name(), k)));
             found.map_or(String::new(), |(argument, k)| {
                 format!("    const double {name} = {argument}[{k}];\n")
             })
@@ -94,17 +101,17 @@ fn local_constant_name(quantity: Quantity, scope: &Scope<'_>) -> Option<String> 
         _ => scope
             .arguments
             .iter()
-            .find_map(|a| a.index(quantity).map(|k| format!("{}{k}", a.argument_name()))),
+            .find_map(|a| a.index_of_quantity(quantity).map(|k| format!("{}{k}", a.argument_name()))),
     }
 }
 
-impl Writer<'_> {
+impl CBodyWriter<'_> {
     fn write_instructions(&mut self) {
         let angles = Angles::find_angles(self.program);
         for k in (0..self.program.instructions.len()).filter(|k| angles.before[*k]) {
             self.write_instruction(k);
         }
-        self.write_angles(&angles);
+        self.write_sines_and_cosines(&angles);
         for k in 0..self.program.instructions.len() {
             if !angles.before[k] && !angles.covered[k] {
                 self.write_instruction(k);
@@ -171,7 +178,7 @@ impl Writer<'_> {
 
     /// Writes the evaluation of the sines and cosines of all angles that depend only on inputs, four at a
     /// time.
-    fn write_angles(&mut self, angles: &Angles) {
+    fn write_sines_and_cosines(&mut self, angles: &Angles) {
         let count = angles.list.len();
         if count == 0 {
             return;
@@ -203,21 +210,22 @@ impl Writer<'_> {
         self.statements.push(Statement { names, text });
     }
 
-    fn operand_text(&mut self, o: Operand) -> Piece {
+    fn operand_text(&mut self, o: Operand) -> CExpression {
         match o {
             Operand::Const(c) if c.is_sign_negative() => {
-                Piece { level: 2, ..Piece::from_atomic_text(c_numeric_literal(c)) }
+                CExpression { level: 2, ..CExpression::from_atomic_text(c_numeric_literal(c)) }
             }
-            Operand::Const(c) => Piece::from_atomic_text(c_numeric_literal(c)),
+            Operand::Const(c) => CExpression::from_atomic_text(c_numeric_literal(c)),
             Operand::Symbol(s) => match local_constant_name(Quantity::from_symbol(s), self.scope) {
-                Some(name) => {
-                    Piece { needs: self.reading_statement_index(s), ..Piece::from_atomic_text(name) }
-                }
-                None => Piece::from_atomic_text(MISSING.to_string()),
+                Some(name) => CExpression {
+                    needs: self.reading_statement_index(s),
+                    ..CExpression::from_atomic_text(name)
+                },
+                None => CExpression::from_atomic_text(MISSING.to_string()),
             },
             // Programs without lanes contain neither tuples nor gathers.
-            Operand::Tuple(_) | Operand::Gather(_) => Piece::from_atomic_text(MISSING.to_string()),
-            Operand::Value(k) => self.pieces[k].take().unwrap_or_else(|| Piece {
+            Operand::Tuple(_) | Operand::Gather(_) => CExpression::from_atomic_text(MISSING.to_string()),
+            Operand::Value(k) => self.pieces[k].take().unwrap_or_else(|| CExpression {
                 text: format!("t{k}"),
                 needs: vec![k],
                 level: 3,
@@ -225,11 +233,11 @@ impl Writer<'_> {
         }
     }
 
-    fn instruction_text(&mut self, op: Op) -> Piece {
+    fn instruction_text(&mut self, op: Op) -> CExpression {
         match op {
             Op::Neg(a) => {
                 let a = self.operand_text(a);
-                Piece { text: format!("-{}", a.text_at_precedence(3)), level: 2, needs: a.needs }
+                CExpression { text: format!("-{}", a.text_at_precedence(3)), level: 2, needs: a.needs }
             }
             Op::Add(a, b) => self.infix_operation([a, b], "+", (1, 2)),
             Op::Sub(a, b) => self.infix_operation([a, b], "-", (1, 2)),
@@ -245,33 +253,33 @@ impl Writer<'_> {
             Op::Extreme(Extreme::Max, a, b) => self.call_text("fmax", &[a, b]),
             Op::Table(lookup, a, b, c) => self.table_lookup_text(lookup, [a, b, c]),
             // Rejected by `check`.
-            Op::Sum(..) | Op::Lane(..) | Op::Join(..) => Piece::from_atomic_text(MISSING.to_string()),
+            Op::Sum(..) | Op::Lane(..) | Op::Join(..) => CExpression::from_atomic_text(MISSING.to_string()),
         }
     }
 
-    fn table_lookup_text(&mut self, lookup: Lookup, x: [Operand; 3]) -> Piece {
+    fn table_lookup_text(&mut self, lookup: Lookup, x: [Operand; 3]) -> CExpression {
         let count = lookup.variable_count();
-        let pieces: Vec<Piece> = x.iter().take(count).map(|o| self.operand_text(*o)).collect();
+        let pieces: Vec<CExpression> = x.iter().take(count).map(|o| self.operand_text(*o)).collect();
         let x: Vec<&str> = pieces.iter().map(|piece| piece.text.as_str()).collect();
         let orders: Vec<String> = lookup.derivative_orders().iter().map(ToString::to_string).collect();
         let Some(table) = self.scope.tables.get(lookup.table_index()) else {
-            return Piece::from_atomic_text(MISSING.to_string());
+            return CExpression::from_atomic_text(MISSING.to_string());
         };
         let text = format!("lw_tabulated_{count}(&self->{table}, {}, {})", x.join(", "), orders.join(", "));
-        Piece { text, needs: pieces.into_iter().flat_map(|piece| piece.needs).collect(), level: 3 }
+        CExpression { text, needs: pieces.into_iter().flat_map(|piece| piece.needs).collect(), level: 3 }
     }
 
-    fn infix_operation(&mut self, [a, b]: [Operand; 2], sign: &str, (level, right): (u8, u8)) -> Piece {
+    fn infix_operation(&mut self, [a, b]: [Operand; 2], sign: &str, (level, right): (u8, u8)) -> CExpression {
         let (a, b) = (self.operand_text(a), self.operand_text(b));
         let text = format!("{} {sign} {}", a.text_at_precedence(level), b.text_at_precedence(right));
-        Piece { text, needs: [a.needs, b.needs].concat(), level }
+        CExpression { text, needs: [a.needs, b.needs].concat(), level }
     }
 
-    fn call_text(&mut self, function: &str, arguments: &[Operand]) -> Piece {
-        let pieces: Vec<Piece> = arguments.iter().map(|o| self.operand_text(*o)).collect();
+    fn call_text(&mut self, function: &str, arguments: &[Operand]) -> CExpression {
+        let pieces: Vec<CExpression> = arguments.iter().map(|o| self.operand_text(*o)).collect();
         let list: Vec<&str> = pieces.iter().map(|piece| piece.text.as_str()).collect();
         let text = format!("{function}({})", list.join(", "));
-        Piece { text, needs: pieces.into_iter().flat_map(|piece| piece.needs).collect(), level: 3 }
+        CExpression { text, needs: pieces.into_iter().flat_map(|piece| piece.needs).collect(), level: 3 }
     }
 }
 
@@ -291,7 +299,12 @@ fn elementary_function_name(f: Elementary) -> String {
 }
 
 /// Writes the statements. Each result is assigned right after the last statement that it depends on.
-fn write_statements(out: &mut String, statements: &[Statement], outputs: &[Piece], places: Places<'_>) {
+fn write_statements(
+    out: &mut String,
+    statements: &[Statement],
+    outputs: &[CExpression],
+    places: OutputTargets<'_>,
+) {
     let size = statements.iter().flat_map(|s| &s.names).max().map_or(0, |m| m + 1);
     let mut bound_by = vec![0; size];
     for (k, statement) in statements.iter().enumerate() {

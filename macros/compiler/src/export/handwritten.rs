@@ -2,7 +2,7 @@
 //! configuration manifold, of steps, of named frames and of limits.
 
 use super::mechanism::ExportedMechanism;
-use super::signatures::{Array, ExportedSignature, reaction_signature};
+use super::signatures::{ArrayArgument, ExportedSignature, reaction_signature};
 use crate::catalogue::Argument;
 
 /// Integration methods of steps, with descriptions for the documentation.
@@ -16,7 +16,7 @@ pub const METHODS: [(&str, &str); 2] = [
 ];
 
 /// Function that is written by hand and not derived.
-struct Handwritten {
+struct HandwrittenFunction {
     name: &'static str,
     /// Names of the arguments and of the results, which determine their sizes.
     arguments: &'static str,
@@ -25,21 +25,21 @@ struct Handwritten {
 }
 
 /// Functions of the configuration manifold.
-const MANIFOLD: [Handwritten; 3] = [
-    Handwritten {
+const MANIFOLD: [HandwrittenFunction; 3] = [
+    HandwrittenFunction {
         name: "integrate",
         arguments: "q dv",
         results: "result",
         docs: "The configuration that is reached from `q` with the constant velocity `dv` in one unit of \
                time, with normalised quaternions. The result may be stored in `q`.",
     },
-    Handwritten {
+    HandwrittenFunction {
         name: "difference",
         arguments: "from to",
         results: "result",
         docs: "The velocity that leads from one configuration to another in one unit of time.",
     },
-    Handwritten {
+    HandwrittenFunction {
         name: "tangent_rate",
         arguments: "dv v",
         results: "result",
@@ -48,15 +48,15 @@ const MANIFOLD: [Handwritten; 3] = [
 ];
 
 /// Derivatives of functions of the configuration manifold.
-const MANIFOLD_DERIVATIVES: [Handwritten; 2] = [
-    Handwritten {
+const MANIFOLD_DERIVATIVES: [HandwrittenFunction; 2] = [
+    HandwrittenFunction {
         name: "integrate_derivatives",
         arguments: "dv",
         results: "by_q by_dv",
         docs: "Derivatives of the result of `integrate` by `q` and `dv`, which are the same for all `q`, \
                with displacements of ball and free joints in body axes; identities for plain coordinates.",
     },
-    Handwritten {
+    HandwrittenFunction {
         name: "tangent_rate_derivatives",
         arguments: "dv v",
         results: "by_dv by_v",
@@ -65,19 +65,19 @@ const MANIFOLD_DERIVATIVES: [Handwritten; 2] = [
 ];
 
 /// Functions of the configuration manifold in declared generalized speeds.
-const SPEEDS: [Handwritten; 3] = [
-    Handwritten {
+const SPEEDS: [HandwrittenFunction; 3] = [
+    HandwrittenFunction {
         docs: "The configuration that is reached from `q` in one unit of time with the constant joint \
                velocities to which the generalized speeds `dv` correspond at `q`, with normalised \
                quaternions. The result may be stored in `q`.",
         ..MANIFOLD[0]
     },
-    Handwritten {
+    HandwrittenFunction {
         docs: "The generalized speeds, at `from`, that lead from one configuration to another in one unit of \
                time.",
         ..MANIFOLD[1]
     },
-    Handwritten {
+    HandwrittenFunction {
         name: "displacement_rate",
         arguments: "q dv v",
         results: "result",
@@ -86,14 +86,14 @@ const SPEEDS: [Handwritten; 3] = [
 ];
 
 /// Derivatives of functions of the configuration manifold in declared generalized speeds.
-const SPEED_DERIVATIVES: [Handwritten; 2] = [
-    Handwritten {
+const SPEED_DERIVATIVES: [HandwrittenFunction; 2] = [
+    HandwrittenFunction {
         arguments: "q dv",
         docs: "Derivatives of the result of `integrate` by `q` and `dv`, in generalized speeds at the \
                result.",
         ..MANIFOLD_DERIVATIVES[0]
     },
-    Handwritten {
+    HandwrittenFunction {
         name: "displacement_rate_derivatives",
         arguments: "q dv v",
         results: "by_q by_dv by_v",
@@ -102,29 +102,29 @@ const SPEED_DERIVATIVES: [Handwritten; 2] = [
 ];
 
 /// Functions of named frames.
-const FRAMES: [Handwritten; 4] = [
-    Handwritten {
+const FRAMES: [HandwrittenFunction; 4] = [
+    HandwrittenFunction {
         name: "frame_placement",
         arguments: "t q",
         results: "result",
         docs: "Placement of a frame in the ground: the rotation matrix column by column (the frame's axes in \
                ground axes), then the position of its origin, m.",
     },
-    Handwritten {
+    HandwrittenFunction {
         name: "frame_velocity",
         arguments: "t q v",
         results: "result",
         docs: "Velocity of a frame relative to the ground, in ground axes: velocity of its origin, m/s, then \
                angular velocity, rad/s.",
     },
-    Handwritten {
+    HandwrittenFunction {
         name: "frame_acceleration",
         arguments: "t q v a",
         results: "result",
         docs: "Acceleration of a frame relative to the ground, in ground axes, without gravity: acceleration \
                of its origin, m/s^2, then angular acceleration, rad/s^2.",
     },
-    Handwritten {
+    HandwrittenFunction {
         name: "frame_jacobian",
         arguments: "t q",
         results: "result",
@@ -143,18 +143,19 @@ pub fn all_signatures(i: &ExportedMechanism<'_>) -> Vec<ExportedSignature> {
     if i.limits.is_some() {
         let docs = "Limits of the coordinates, and maximum magnitudes of velocities and forces, in the order \
                     of v; infinite for a missing limit.";
-        let limits = Handwritten { name: LIMITS, arguments: "", results: "lower upper speed effort", docs };
+        let limits =
+            HandwrittenFunction { name: LIMITS, arguments: "", results: "lower upper speed effort", docs };
         functions.push(limits.signature(i));
     }
-    let [plain, derivatives] = match i.has_speeds() {
+    let [plain, derivatives] = match i.has_generalized_speeds() {
         true => [&SPEEDS[..], &SPEED_DERIVATIVES],
         false => [&MANIFOLD[..], &MANIFOLD_DERIVATIVES],
     };
     let derivatives = derivatives.iter().filter(|_| i.has_derivatives());
     functions.extend(plain.iter().chain(derivatives).map(|f| f.signature(i)));
     for (method, about) in METHODS.iter().filter(|_| i.has_steps) {
-        functions.push(step_signature(method, about, i));
-        functions.extend(i.has_transitions.then(|| transition_signature(method, i)));
+        functions.push(integration_step_signature(method, about, i));
+        functions.extend(i.has_transitions.then(|| state_transition_signature(method, i)));
     }
     if !i.output.frames.is_empty() {
         functions.extend(FRAMES.iter().map(|f| ExportedSignature { of_frame: true, ..f.signature(i) }));
@@ -166,11 +167,12 @@ pub fn all_signatures(i: &ExportedMechanism<'_>) -> Vec<ExportedSignature> {
 /// of the manifold under other names.
 pub fn joint_manifold_signatures(i: &ExportedMechanism<'_>) -> Vec<ExportedSignature> {
     let derivatives = MANIFOLD_DERIVATIVES.iter().filter(|_| i.has_derivatives());
-    let rename = |f: ExportedSignature| ExportedSignature { name: format!("joints_{}", f.name), ..f };
-    MANIFOLD.iter().chain(derivatives).map(|f| rename(f.signature(i))).collect()
+    let prefix_name_with_joints =
+        |f: ExportedSignature| ExportedSignature { name: format!("joints_{}", f.name), ..f };
+    MANIFOLD.iter().chain(derivatives).map(|f| prefix_name_with_joints(f.signature(i))).collect()
 }
 
-impl Handwritten {
+impl HandwrittenFunction {
     fn signature(&self, i: &ExportedMechanism<'_>) -> ExportedSignature {
         let arguments = self.arguments.split_whitespace().filter(|name| *name != "t" || i.model.time);
         ExportedSignature {
@@ -183,47 +185,47 @@ impl Handwritten {
         }
     }
 
-    fn c_array_of_result(&self, name: &str, i: &ExportedMechanism<'_>) -> Array {
+    fn c_array_of_result(&self, name: &str, i: &ExportedMechanism<'_>) -> ArrayArgument {
         let (n, m) = (i.nv(), i.nu());
         match (self.name, name) {
-            ("integrate", _) | (_, "next_q") => Array::vector(name, i.nq()),
-            ("frame_placement", _) => Array::vector(name, 12),
-            ("frame_jacobian", _) => Array::matrix(name, 6, n),
-            ("frame_velocity" | "frame_acceleration", _) => Array::vector(name, 6),
-            (_, "by_state") => Array::matrix(name, 2 * n, 2 * n),
-            (_, "by_input") => Array::matrix(name, 2 * n, m),
-            (_, "by_h") => Array::vector(name, 2 * n),
-            (_, "by_q" | "by_dv" | "by_v") => Array::matrix(name, n, n),
-            _ => Array::vector(name, n),
+            ("integrate", _) | (_, "next_q") => ArrayArgument::vector(name, i.nq()),
+            ("frame_placement", _) => ArrayArgument::vector(name, 12),
+            ("frame_jacobian", _) => ArrayArgument::matrix(name, 6, n),
+            ("frame_velocity" | "frame_acceleration", _) => ArrayArgument::vector(name, 6),
+            (_, "by_state") => ArrayArgument::matrix(name, 2 * n, 2 * n),
+            (_, "by_input") => ArrayArgument::matrix(name, 2 * n, m),
+            (_, "by_h") => ArrayArgument::vector(name, 2 * n),
+            (_, "by_q" | "by_dv" | "by_v") => ArrayArgument::matrix(name, n, n),
+            _ => ArrayArgument::vector(name, n),
         }
     }
 }
 
 /// Returns the array of an argument of a function that is written by hand.
-fn argument_array(name: &str, i: &ExportedMechanism<'_>) -> Array {
+fn argument_array(name: &str, i: &ExportedMechanism<'_>) -> ArrayArgument {
     let argument = match name {
         "t" => Argument::T,
         "q" => Argument::Q,
         "v" => Argument::V,
         "a" => Argument::A,
         "u" => Argument::U,
-        "h" => return Array::value("h", "step size, s"),
-        "from" | "to" => return Array::vector(name, i.nq()),
-        _ => return Array::vector(name, i.nv()),
+        "h" => return ArrayArgument::scalar_value("h", "step size, s"),
+        "from" | "to" => return ArrayArgument::vector(name, i.nq()),
+        _ => return ArrayArgument::vector(name, i.nv()),
     };
-    Array::from_argument(argument, i)
+    ArrayArgument::from_argument(argument, i)
 }
 
-fn step_signature(method: &str, about: &str, i: &ExportedMechanism<'_>) -> ExportedSignature {
+fn integration_step_signature(method: &str, about: &str, i: &ExportedMechanism<'_>) -> ExportedSignature {
     let docs = format!(
         "One step of {about}, of `h` seconds, with constant inputs `u`: configuration and velocity after it. \
          The results may be stored in `q` and `v`."
     );
-    let step = Handwritten { name: "", arguments: "t q v u h", results: "next_q next_v", docs: "" };
+    let step = HandwrittenFunction { name: "", arguments: "t q v u h", results: "next_q next_v", docs: "" };
     ExportedSignature { name: format!("{method}_step"), docs: vec![docs], ..step.signature(i) }
 }
 
-fn transition_signature(method: &str, i: &ExportedMechanism<'_>) -> ExportedSignature {
+fn state_transition_signature(method: &str, i: &ExportedMechanism<'_>) -> ExportedSignature {
     let [results, by_h] = match i.model.time {
         true => ["next_q next_v by_state by_input", ""],
         false => [
@@ -236,6 +238,6 @@ fn transition_signature(method: &str, i: &ExportedMechanism<'_>) -> ExportedSign
          configuration (as `integrate` takes it), then the change of the velocity, `x` at the end is \
          `by_state` times `x` at the start plus `by_input` times the change of the inputs{by_h}."
     );
-    let transition = Handwritten { name: "", arguments: "t q v u h", results, docs: "" };
+    let transition = HandwrittenFunction { name: "", arguments: "t q v u h", results, docs: "" };
     ExportedSignature { name: format!("{method}_transition"), docs: vec![docs], ..transition.signature(i) }
 }

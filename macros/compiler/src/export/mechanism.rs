@@ -3,8 +3,8 @@
 use super::handwritten::{METHODS, all_signatures};
 use super::names;
 use super::signatures::{ExportedSignature, reaction_name};
-use crate::catalogue::{Argument, Called, Id, REACTION, Shape, TOUCHED};
-use crate::derive::{Function, Output};
+use crate::catalogue::{Argument, CalledFunction, GeneratedId, REACTION, Shape, TOUCHED};
+use crate::derive::{DerivationOutput, Function};
 use crate::lower::{Op, Operand, Program};
 use crate::mechanism::{Chart, Model, SuppliedQuantity};
 
@@ -45,7 +45,7 @@ pub struct ExportedMechanism<'a> {
     /// Mechanism that is exported.
     pub model: &'a Model<'a>,
     /// Functions of the mechanism in Rust.
-    pub output: &'a Output,
+    pub output: &'a DerivationOutput,
     /// Prefix of all names.
     pub prefix: String,
     /// Members of the parameter struct.
@@ -77,13 +77,13 @@ impl<'a> ExportedMechanism<'a> {
     /// A program contains SIMD lanes.
     pub fn new(
         model: &'a Model<'a>,
-        output: &'a Output,
+        output: &'a DerivationOutput,
         tables: &[String],
         options: &Options,
     ) -> Result<ExportedMechanism<'a>, ExportObstacle> {
         reject_vector_lanes(output)?;
         let prefix = match options.prefix.as_str() {
-            "" => names::c_name_prefix(&names::snake_case_prefix(&model.name)),
+            "" => names::c_name_prefix(&names::to_snake_case(&model.name)),
             given => names::c_name_prefix(given),
         };
         let shared: Vec<&String> = model.parameters.iter().chain(tables).collect();
@@ -104,75 +104,91 @@ impl<'a> ExportedMechanism<'a> {
             functions: Vec::new(),
             left_out: Vec::new(),
         };
-        output.functions.iter().for_each(|f| interface.sort_function(f));
+        output.functions.iter().for_each(|f| interface.add_function_to_group(f));
         // A static function must precede its callers, and must have one.
-        interface.hidden.sort_by_key(|f| f.id == Id::AccelerationsAndInverse);
+        interface.hidden.sort_by_key(|f| f.id == GeneratedId::AccelerationsAndInverse);
         if !output.functions.iter().any(|f| matches!(f.shape, Shape::CalledForward(_))) {
-            interface.hidden.retain(|f| f.id != Id::AccelerationsAndInverse);
+            interface.hidden.retain(|f| f.id != GeneratedId::AccelerationsAndInverse);
         }
-        interface.find_steps(options.reproducible);
+        interface.determine_available_integration_steps(options.reproducible);
         interface.left_out.extend(options.left_out.iter().cloned());
         interface.functions = all_signatures(&interface);
         Ok(interface)
     }
 
     /// Adds a function to the group in which it is exported, or to those that exist in Rust only.
-    fn sort_function(&mut self, f: &'a Function) {
-        let name = |prefix: &str| f.name.strip_prefix(prefix).unwrap_or_default();
+    fn add_function_to_group(&mut self, f: &'a Function) {
+        let function_name_without_prefix = |prefix: &str| f.name.strip_prefix(prefix).unwrap_or_default();
         let is_contact_force =
             |a: &Argument| matches!(a, Argument::Given(_, SuppliedQuantity::ContactForces, _));
         let (has_frames, has_derivatives) = (!self.output.frames.is_empty(), self.has_derivatives());
         match f.id {
-            _ if f.reads_results_of(Called::ContactFeatures) => {
+            _ if f.reads_results_of(CalledFunction::ContactFeatures) => {
                 if !f.is_hidden() {
                     self.left_out.push(format!("{}: contacts of polytopes with each other", f.name));
                 }
             }
-            Id::PolytopePoses => {}
-            Id::RateMatrix if has_frames || has_derivatives => self.hidden.push(f),
-            Id::RateAccelerations if has_frames => self.hidden.push(f),
-            Id::SpeedMatrix | Id::RateChanges if has_derivatives => self.hidden.push(f),
-            Id::PassiveForces | Id::PassiveDerivatives | Id::AccelerationsAndInverse => self.hidden.push(f),
-            Id::Reaction if f.arguments.iter().any(is_contact_force) => {
-                self.left_out.push(format!("{}: a free-body diagram under contact forces", name(REACTION)));
+            GeneratedId::PolytopePoses => {}
+            GeneratedId::RateMatrix if has_frames || has_derivatives => self.hidden.push(f),
+            GeneratedId::RateAccelerations if has_frames => self.hidden.push(f),
+            GeneratedId::SpeedMatrix | GeneratedId::RateChanges if has_derivatives => self.hidden.push(f),
+            GeneratedId::PassiveForces
+            | GeneratedId::PassiveDerivatives
+            | GeneratedId::AccelerationsAndInverse => self.hidden.push(f),
+            GeneratedId::Reaction if f.arguments.iter().any(is_contact_force) => {
+                self.left_out.push(format!(
+                    "{}: a free-body diagram under contact forces",
+                    function_name_without_prefix(REACTION)
+                ));
             }
-            Id::Reaction if self.find(Id::ForwardDynamics).is_some() => self.reactions.push(f),
-            Id::Reaction => self.left_out.push(format!("{}: a reaction under constraints", name(REACTION))),
-            Id::Limits => self.limits = Some(f),
+            GeneratedId::Reaction if self.find_derived_function(GeneratedId::ForwardDynamics).is_some() => {
+                self.reactions.push(f)
+            }
+            GeneratedId::Reaction => self
+                .left_out
+                .push(format!("{}: a reaction under constraints", function_name_without_prefix(REACTION))),
+            GeneratedId::Limits => self.limits = Some(f),
             // Variants that write to matrices of the caller: all exported functions do so.
-            Id::InverseDynamicsDerivativesInto | Id::ForwardDynamicsDerivativesInto | Id::MassMatrixInto => {}
-            Id::ContactDerivatives | Id::ContactDerivativesByParameters => {}
-            Id::Figures | Id::ConstraintCurvature | Id::ConstraintResponse => {}
-            Id::SlippingResponse => {}
-            Id::ConstrainedDynamics => self.left_out.push(
+            GeneratedId::InverseDynamicsDerivativesInto
+            | GeneratedId::ForwardDynamicsDerivativesInto
+            | GeneratedId::MassMatrixInto => {}
+            GeneratedId::ContactDerivatives | GeneratedId::ContactDerivativesByParameters => {}
+            GeneratedId::Figures | GeneratedId::ConstraintCurvature | GeneratedId::ConstraintResponse => {}
+            GeneratedId::SlippingResponse => {}
+            GeneratedId::ConstrainedDynamics => self.left_out.push(
                 "forward_dynamics, assemble and the other functions that solve for constraint forces"
                     .to_string(),
             ),
-            Id::ContactGaps => {
+            GeneratedId::ContactGaps => {
                 let line = "time steps with impacts; gap functions, contact velocities and their Jacobian \
                             are available";
                 self.left_out.push(line.to_string());
                 self.public.push(f);
             }
-            Id::Touched => self.left_out.push(format!("{}: forces at contacts", name(TOUCHED))),
-            Id::ContactLaws | Id::InputDerivatives | Id::MotionDerivatives => self.public.push(f),
+            GeneratedId::Touched => {
+                self.left_out.push(format!("{}: forces at contacts", function_name_without_prefix(TOUCHED)))
+            }
+            GeneratedId::ContactLaws | GeneratedId::InputDerivatives | GeneratedId::MotionDerivatives => {
+                self.public.push(f)
+            }
             _ if f.is_hidden() || matches!(f.shape, Shape::Record(_)) => {}
             _ => self.public.push(f),
         }
     }
 
     /// Determines whether integration steps and their Jacobians exist.
-    fn find_steps(&mut self, reproducible: bool) {
+    fn determine_available_integration_steps(&mut self, reproducible: bool) {
         let is_taken = self.output.functions.iter().any(|f| {
             let method = f.name.strip_suffix("_step").or(f.name.strip_suffix("_transition"));
             method.is_some_and(|method| METHODS.iter().any(|(known, _)| *known == method))
         });
-        self.has_steps = self.find(Id::ForwardDynamics).is_some()
+        self.has_steps = self.find_derived_function(GeneratedId::ForwardDynamics).is_some()
             && self.model.contacts.is_empty()
             && !is_taken
             && self.nv() > 0;
-        self.has_transitions =
-            self.has_steps && self.has_derivatives() && self.find(Id::ForwardDynamicsDerivatives).is_some();
+        self.has_transitions = self.has_steps
+            && self.has_derivatives()
+            && self.find_derived_function(GeneratedId::ForwardDynamicsDerivatives).is_some();
         if reproducible && std::mem::take(&mut self.has_transitions) {
             let line =
                 "rk4_transition and semi_implicit_euler_transition: their bits would not be those of Rust";
@@ -181,7 +197,7 @@ impl<'a> ExportedMechanism<'a> {
     }
 
     /// Returns the derived function with an identifier.
-    pub fn find(&self, id: Id) -> Option<&'a Function> {
+    pub fn find_derived_function(&self, id: GeneratedId) -> Option<&'a Function> {
         self.output.functions.iter().find(|f| f.id == id)
     }
 
@@ -212,22 +228,22 @@ impl<'a> ExportedMechanism<'a> {
 
     /// Returns true if functions for the derivatives of the dynamics are exported.
     pub fn has_derivatives(&self) -> bool {
-        self.find(Id::InputDerivatives).is_some()
+        self.find_derived_function(GeneratedId::InputDerivatives).is_some()
     }
 
     /// Returns true if the velocities are declared generalized speeds.
-    pub fn has_speeds(&self) -> bool {
+    pub fn has_generalized_speeds(&self) -> bool {
         self.model.speeds.is_some()
     }
 
     /// Returns true if all joints have plain coordinates.
-    pub fn is_plain(&self) -> bool {
+    pub fn has_only_plain_coordinates(&self) -> bool {
         self.output.charts.iter().all(|chart| matches!(chart, Chart::Plain(..)))
     }
 
     /// Returns the names of the functions for outputs.
     pub fn output_names(&self) -> Vec<String> {
-        let own = self.public.iter().filter(|f| f.id == Id::Output).map(|f| f.name.as_str());
+        let own = self.public.iter().filter(|f| f.id == GeneratedId::Output).map(|f| f.name.as_str());
         own.chain(self.reactions.iter().map(|f| reaction_name(f)))
             .map(names::replace_invalid_characters)
             .collect()
@@ -240,12 +256,12 @@ impl<'a> ExportedMechanism<'a> {
     }
 
     /// Returns the names of the arguments of the function for the forces of inputs, except time.
-    pub fn input_arguments(&self) -> &'static [&'static str] {
+    pub fn input_force_argument_names(&self) -> &'static [&'static str] {
         if self.model.velocity_inputs { &["q", "v", "u"] } else { &["q", "u"] }
     }
 
     /// Returns the call of a function. Parameters and time are added to the arguments.
-    pub fn call(&self, name: &str, arguments: &[&str]) -> String {
+    pub fn function_call_text(&self, name: &str, arguments: &[&str]) -> String {
         let own = self.takes_parameter_struct().then_some("self");
         let time = self.model.time.then_some("t");
         let list: Vec<&str> = own.into_iter().chain(time).chain(arguments.iter().copied()).collect();
@@ -254,15 +270,17 @@ impl<'a> ExportedMechanism<'a> {
 }
 
 /// Returns true if output `k` of a function is always zero.
-pub fn is_zero(f: &Function, k: usize) -> bool {
+pub fn is_zero_output(f: &Function, k: usize) -> bool {
     f.program.outputs.get(k).is_none_or(|o| *o == Operand::Const(0.0))
 }
 
 /// Returns an error if a program contains vector lanes, which exported code cannot have.
-fn reject_vector_lanes(output: &Output) -> Result<(), ExportObstacle> {
-    let is_lane = |op: &Op| matches!(op, Op::Sum(..) | Op::Lane(..) | Op::Join(..));
+fn reject_vector_lanes(output: &DerivationOutput) -> Result<(), ExportObstacle> {
+    let is_lane_operation = |op: &Op| matches!(op, Op::Sum(..) | Op::Lane(..) | Op::Join(..));
     let contains_vector_lanes = |program: &Program| {
-        program.instructions.iter().any(is_lane) || !program.gathers.is_empty() || !program.tuples.is_empty()
+        program.instructions.iter().any(is_lane_operation)
+            || !program.gathers.is_empty()
+            || !program.tuples.is_empty()
     };
     let steps = output.links.iter().flat_map(|l| [&l.placement, &l.twist, &l.acceleration, &l.columns]);
     let steps = steps.chain(output.frames.iter().flat_map(|f| [&f.placement, &f.twist, &f.acceleration]));

@@ -100,7 +100,7 @@ fn make_names_unique(all: impl Iterator<Item = String>) -> Vec<String> {
 }
 
 /// Converts a type name to lower case with underscores between words.
-pub fn snake_case_prefix(name: &str) -> String {
+pub fn to_snake_case(name: &str) -> String {
     let mut text = String::new();
     let mut before: Option<char> = None;
     let mut rest = name.trim_start_matches("r#").chars().peekable();
@@ -131,7 +131,7 @@ mod tests {
         assert_eq!(unique_identifiers(&["a-b", "a_b", "a b"]), ["a_b", "a_b_2", "a_b_3"]);
         assert_eq!(preprocessor_names(&["tool", "r#in", "left-arm"]), ["TOOL", "IN", "LEFT_ARM"]);
         assert_eq!(
-            ["CartPole", "UR5", "Solo12", "HTTPServer"].map(snake_case_prefix),
+            ["CartPole", "UR5", "Solo12", "HTTPServer"].map(to_snake_case),
             ["cart_pole", "ur5", "solo12", "http_server"]
         );
     }

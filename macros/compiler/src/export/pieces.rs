@@ -2,7 +2,7 @@
 
 /// C expression with the instructions on which it depends.
 #[derive(Clone, Default)]
-pub struct Piece {
+pub struct CExpression {
     /// Text of the expression in C.
     pub text: String,
     /// Indices of the instructions whose values the expression refers to.
@@ -11,10 +11,10 @@ pub struct Piece {
     pub level: u8,
 }
 
-impl Piece {
+impl CExpression {
     /// Creates an expression that refers to no values and needs no parentheses.
-    pub fn from_atomic_text(text: String) -> Piece {
-        Piece { text, needs: Vec::new(), level: 3 }
+    pub fn from_atomic_text(text: String) -> CExpression {
+        CExpression { text, needs: Vec::new(), level: 3 }
     }
 
     /// Returns the text, in parentheses if the precedence is below `level`.

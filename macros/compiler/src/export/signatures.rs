@@ -3,12 +3,12 @@
 use super::comments::{argument_description, c_function_comment, format_number_count, without_doc_links};
 use super::mechanism::ExportedMechanism;
 use super::names::replace_invalid_characters;
-use crate::catalogue::{Argument, Id, REACTION, Shape};
+use crate::catalogue::{Argument, GeneratedId, REACTION, Shape};
 use crate::derive::Function;
 
 /// Array argument that a function reads or writes for one state.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Array {
+pub struct ArrayArgument {
     /// Name of the argument.
     pub name: String,
     /// Number of rows of the matrix; for a vector its length.
@@ -21,24 +21,24 @@ pub struct Array {
     pub is_value: bool,
 }
 
-impl Array {
+impl ArrayArgument {
     /// Returns the description of an array argument for a vector.
-    pub fn vector(name: &str, length: usize) -> Array {
-        Array::matrix(name, length, 1)
+    pub fn vector(name: &str, length: usize) -> ArrayArgument {
+        ArrayArgument::matrix(name, length, 1)
     }
 
     /// Returns the description of an array argument for a matrix stored by columns.
-    pub fn matrix(name: &str, rows: usize, columns: usize) -> Array {
+    pub fn matrix(name: &str, rows: usize, columns: usize) -> ArrayArgument {
         let about = match columns {
             1 => format_number_count(rows),
             _ => format!("{rows} by {columns}, column by column"),
         };
-        Array { name: name.to_string(), rows, columns, about, is_value: false }
+        ArrayArgument { name: name.to_string(), rows, columns, about, is_value: false }
     }
 
     /// Returns the description of a scalar argument that is passed by value.
-    pub fn value(name: &str, about: &str) -> Array {
-        Array { about: about.to_string(), is_value: true, ..Array::vector(name, 1) }
+    pub fn scalar_value(name: &str, about: &str) -> ArrayArgument {
+        ArrayArgument { about: about.to_string(), is_value: true, ..ArrayArgument::vector(name, 1) }
     }
 
     /// Returns the number of entries of the array.
@@ -47,14 +47,14 @@ impl Array {
     }
 
     /// Returns the description of an argument of a derived function.
-    pub fn from_argument(argument: Argument, i: &ExportedMechanism<'_>) -> Array {
+    pub fn from_argument(argument: Argument, i: &ExportedMechanism<'_>) -> ArrayArgument {
         let about = argument_description(argument);
         match argument {
-            Argument::T => Array::value("t", about),
+            Argument::T => ArrayArgument::scalar_value("t", about),
             a => {
-                let length = a.length([i.nq(), i.nv(), i.nu()]);
+                let length = a.argument_length([i.nq(), i.nv(), i.nu()]);
                 let about = format!("{about}, {}", format_number_count(length));
-                Array { about, ..Array::vector(a.argument_name(), length) }
+                ArrayArgument { about, ..ArrayArgument::vector(a.argument_name(), length) }
             }
         }
     }
@@ -66,9 +66,9 @@ pub struct ExportedSignature {
     /// Name of the function without the prefix.
     pub name: String,
     /// Arguments after the parameters and the index of the frame.
-    pub arguments: Vec<Array>,
+    pub arguments: Vec<ArrayArgument>,
     /// Result arrays, in the order of the arguments that receive them.
-    pub results: Vec<Array>,
+    pub results: Vec<ArrayArgument>,
     /// Whether the function has a single result and returns it by value.
     pub returns: bool,
     /// Whether the function takes the index of a named frame.
@@ -92,13 +92,15 @@ impl ExportedSignature {
         i: &ExportedMechanism<'_>,
     ) -> ExportedSignature {
         let results = shape.result_arrays();
-        let results: Vec<Array> =
-            results.into_iter().map(|(name, rows, columns)| Array::matrix(name, rows, columns)).collect();
+        let results: Vec<ArrayArgument> = results
+            .into_iter()
+            .map(|(name, rows, columns)| ArrayArgument::matrix(name, rows, columns))
+            .collect();
         let returns = results.is_empty();
         ExportedSignature {
             name: name.to_string(),
-            arguments: arguments.iter().map(|a| Array::from_argument(*a, i)).collect(),
-            results: if returns { vec![Array::vector("result", 1)] } else { results },
+            arguments: arguments.iter().map(|a| ArrayArgument::from_argument(*a, i)).collect(),
+            results: if returns { vec![ArrayArgument::vector("result", 1)] } else { results },
             returns,
             of_frame: false,
             docs,
@@ -112,7 +114,7 @@ impl ExportedSignature {
     }
 
     /// Returns the comment that documents the function: its arguments and these results with their sizes.
-    pub fn comment(&self, results: &[Array]) -> String {
+    pub fn function_comment(&self, results: &[ArrayArgument]) -> String {
         let arguments = self.arguments.iter().map(|a| (a.name.as_str(), a.about.clone()));
         let results = results.iter().map(|a| (a.name.as_str(), format!("out: {}", a.about)));
         c_function_comment(&self.docs, arguments.chain(results))
@@ -131,7 +133,7 @@ impl ExportedSignature {
 }
 
 /// Returns a list of arrays with their lengths, in the syntax of Python.
-pub fn python_array_list(arrays: &[Array]) -> String {
+pub fn python_array_list(arrays: &[ArrayArgument]) -> String {
     let entries: Vec<String> = arrays.iter().map(|a| format!("({:?}, {})", a.name, a.length())).collect();
     format!("[{}]", entries.join(", "))
 }
@@ -167,7 +169,7 @@ pub fn public_identifier(name: &str) -> String {
 /// Returns the public name of a derived function.
 fn public_name(f: &Function) -> String {
     match f.id {
-        Id::InputDerivatives => "generalized_forces_derivatives".to_string(),
+        GeneratedId::InputDerivatives => "generalized_forces_derivatives".to_string(),
         _ => public_identifier(&f.name),
     }
 }
@@ -175,15 +177,15 @@ fn public_name(f: &Function) -> String {
 /// Returns the documentation of a derived function outside Rust.
 fn function_documentation(f: &Function) -> Vec<String> {
     let docs: &[&str] = match f.id {
-        Id::InputDerivatives => {
+        GeneratedId::InputDerivatives => {
             &["`(∂τ/∂q, ∂τ/∂v, ∂τ/∂u)` of the inputs' `generalized_forces`. Column `i` of \
                                    a derivative by `q` is along `q ⊕ ε eᵢ` (see `integrate`)."]
         }
-        Id::ContactLaws => {
+        GeneratedId::ContactLaws => {
             &["Coefficients of friction, restitution and static friction of each contact, in \
                               the order of the gaps."]
         }
-        Id::MotionDerivatives => &[
+        GeneratedId::MotionDerivatives => &[
             "Derivatives of `M a + h − Jᵀ λ` and of the constraint accelerations `J a + b` by `q` and `v`, \
              at given accelerations `a` and multipliers `lambda`; derivatives of the constraint rates by `q`; \
              and the rotation of displacements in rotating axes, the derivative of their rates. Column `i` \

@@ -27,7 +27,7 @@ impl TemplateValues {
         let mut text = String::with_capacity(template.len());
         for line in template.lines() {
             if line.starts_with("#if") {
-                open.push(line.strip_prefix("#if ").and_then(|name| self.condition(name)));
+                open.push(line.strip_prefix("#if ").and_then(|name| self.condition_value(name)));
             } else if let ("#else", Some(Some(holds))) = (line, open.last_mut()) {
                 *holds = !*holds;
                 continue;
@@ -44,7 +44,7 @@ impl TemplateValues {
     }
 
     /// Returns whether a condition holds; `None` if the template does not define it.
-    fn condition(&self, name: &str) -> Option<bool> {
+    fn condition_value(&self, name: &str) -> Option<bool> {
         let (plain, wanted) = name.strip_prefix('!').map_or((name, true), |plain| (plain, false));
         let known = self.conditions.iter().find(|(known, _)| *known == plain);
         known.map(|(_, holds)| *holds == wanted)

@@ -22,12 +22,12 @@ pub fn c_numeric_literal(c: f64) -> String {
 
 /// Converts C code with `double` to C code with `float`.
 pub fn in_single_precision(code: &str) -> String {
-    replaced(code, &single_precision_literal, &single_precision_c_word)
+    replace_numbers_and_words(code, &single_precision_literal, &single_precision_c_word)
 }
 
 /// Replaces the numbers of code, and its words, which are given together with the code after them. Comments
 /// do not change.
-pub fn replaced(
+pub fn replace_numbers_and_words(
     code: &str,
     number: &dyn Fn(&str) -> String,
     replaced_word: &dyn Fn(&str, &str) -> String,

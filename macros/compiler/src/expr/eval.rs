@@ -88,14 +88,14 @@ impl<'g> Tape<'g> {
                 Node::Gather(k) => {
                     pad_to_lane_count(graph.symbols_of_gather(k).into_iter().map(symbol).collect())
                 }
-                Node::Sum(n, _) => [V::sum(&lanes_at_tape_index(*a)[..usize::from(n)]); N],
+                Node::Sum(n, _) => [V::sum_of_lanes(&lanes_at_tape_index(*a)[..usize::from(n)]); N],
                 Node::Lane(k, _) => [lanes_at_tape_index(*a)[usize::from(k)]; N],
                 Node::Join(n, _, _) => join_lanes(n.into(), lanes_at_tape_index(*a), lanes_at_tape_index(*b)),
                 Node::Symbol(s) => [symbol(s); N],
                 node => {
                     let (a, b, c) =
                         (lanes_at_tape_index(*a), lanes_at_tape_index(*b), lanes_at_tape_index(*c));
-                    std::array::from_fn(|lane| V::step(node, [a[lane], b[lane], c[lane]]))
+                    std::array::from_fn(|lane| V::apply_node_operation(node, [a[lane], b[lane], c[lane]]))
                 }
             };
             values.push(value);
@@ -108,9 +108,9 @@ impl<'g> Tape<'g> {
 trait TapeNumber: Copy {
     /// Converts a constant to this number type.
     fn from_number(number: f64) -> Self;
-    fn sum(lanes: &[Self]) -> Self;
+    fn sum_of_lanes(lanes: &[Self]) -> Self;
     /// Applies the operation of a node to the values of its operands.
-    fn step(node: Node, operands: [Self; 3]) -> Self;
+    fn apply_node_operation(node: Node, operands: [Self; 3]) -> Self;
 }
 
 impl TapeNumber for f64 {
@@ -118,11 +118,11 @@ impl TapeNumber for f64 {
         number
     }
 
-    fn sum(lanes: &[f64]) -> f64 {
+    fn sum_of_lanes(lanes: &[f64]) -> f64 {
         lanes.iter().sum()
     }
 
-    fn step(node: Node, operands: [f64; 3]) -> f64 {
+    fn apply_node_operation(node: Node, operands: [f64; 3]) -> f64 {
         apply_operation(node, operands)
     }
 }
@@ -156,7 +156,7 @@ impl TapeNumber for ValueWithRoundingError {
         ValueWithRoundingError { value: number, error: f64::EPSILON * number.abs() }
     }
 
-    fn sum(lanes: &[ValueWithRoundingError]) -> ValueWithRoundingError {
+    fn sum_of_lanes(lanes: &[ValueWithRoundingError]) -> ValueWithRoundingError {
         let mut sum = ValueWithRoundingError { value: 0.0, error: 0.0 };
         for lane in lanes {
             sum = ValueWithRoundingError {
@@ -167,7 +167,7 @@ impl TapeNumber for ValueWithRoundingError {
         sum
     }
 
-    fn step(node: Node, operands: [ValueWithRoundingError; 3]) -> ValueWithRoundingError {
+    fn apply_node_operation(node: Node, operands: [ValueWithRoundingError; 3]) -> ValueWithRoundingError {
         let at = operands.map(|operand| operand.value);
         let value = apply_operation(node, at);
         let mut error = f64::EPSILON * value.abs();

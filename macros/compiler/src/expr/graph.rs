@@ -423,7 +423,7 @@ impl Graph {
             return quotient;
         }
         let ((na, a), (nb, b)) = (self.split_sign(a), self.split_sign(b));
-        let magnitude = match self.inverse(b) {
+        let magnitude = match self.finite_inverse_of_constant(b) {
             // Division by a constant becomes multiplication by its inverse. This is exact for powers of two,
             // otherwise within half an ulp.
             Some(inverse) => self.mul(inverse, a),
@@ -433,7 +433,7 @@ impl Graph {
     }
 
     /// Returns the inverse of a constant if it is finite.
-    fn inverse(&self, b: Id) -> Option<Id> {
+    fn finite_inverse_of_constant(&self, b: Id) -> Option<Id> {
         match self.node(b) {
             Node::Const(y) if y != 0.0 && (1.0 / y).is_finite() => Some(self.intern_constant(1.0 / y)),
             Node::Tuple(_) => self.map_lanes_if_finite(b, |y| 1.0 / y),

@@ -160,7 +160,7 @@ impl<'g> Expr<'g> {
 
     /// Returns true if the expression and `bound` are constant and the magnitude of the expression is at most
     /// the bound in every lane.
-    pub fn is_within_bound(self, bound: Expr<'g>) -> bool {
+    pub fn is_magnitude_within_bound(self, bound: Expr<'g>) -> bool {
         match (self.constant_lane_values(MAX_LANES), bound.constant_lane_values(MAX_LANES)) {
             (Some(x), Some(bound)) => x.iter().zip(&bound).all(|(x, bound)| x.abs() <= *bound),
             _ => false,

@@ -59,7 +59,7 @@ impl<'g> Vec3<'g> {
     /// Returns the Euclidean norm of a vector that may pass through zero. A [`TINY`] constant under the root,
     /// below the resolution of any other length, makes its derivatives at zero vanish, where they would
     /// otherwise be NaN.
-    pub fn length(self) -> Expr<'g> {
+    pub fn regularised_norm(self) -> Expr<'g> {
         let mut parts = self.0.into_iter().filter(|c| !c.is_zero());
         match (parts.next(), parts.next(), self.constant_components()) {
             (Some(only), None, _) => only.apply_function(Function::Abs),

@@ -6,41 +6,44 @@ use super::{Expr, Graph, Memo};
 
 /// Substitutes `by(s)` for every symbol `s` of an expression for which it is not `None`.
 pub fn substitute_symbols<'g>(e: Expr<'g>, by: &dyn Fn(Symbol) -> Option<Expr<'g>>) -> Expr<'g> {
-    replace_all(&[e], by).pop().unwrap_or(e)
+    substitute_symbols_in_all(&[e], by).pop().unwrap_or(e)
 }
 
 /// Substitutes `by(s)` for every symbol `s` of several expressions for which it is not `None`.
-pub fn replace_all<'g>(e: &[Expr<'g>], by: &dyn Fn(Symbol) -> Option<Expr<'g>>) -> Vec<Expr<'g>> {
+pub fn substitute_symbols_in_all<'g>(
+    e: &[Expr<'g>],
+    by: &dyn Fn(Symbol) -> Option<Expr<'g>>,
+) -> Vec<Expr<'g>> {
     replace_symbols_and_calls(e, by, &|f, x| x.apply_function(f))
 }
 
 /// Constructor of the replacement for an elementary function of an expression.
-type Call<'a, 'g> = &'a dyn Fn(Function, Expr<'g>) -> Expr<'g>;
+type CallReplacement<'a, 'g> = &'a dyn Fn(Function, Expr<'g>) -> Expr<'g>;
 
 /// Substitutes `by(s)` for every symbol `s` of several expressions for which it is not `None`, and builds
 /// elementary functions with `call`.
 pub fn replace_symbols_and_calls<'g>(
     e: &[Expr<'g>],
     by: &dyn Fn(Symbol) -> Option<Expr<'g>>,
-    call: Call<'_, 'g>,
+    call: CallReplacement<'_, 'g>,
 ) -> Vec<Expr<'g>> {
     let Some(first) = e.first() else { return Vec::new() };
     let mut known = Memo::new(first.graph());
-    e.iter().map(|e| replace_in_expression(*e, &mut known, by, call)).collect()
+    e.iter().map(|e| substitute_in_expression(*e, &mut known, by, call)).collect()
 }
 
 /// Substitutes `by` for every occurrence of the node `part` in an expression.
 pub fn substitute_subexpression<'g>(e: Expr<'g>, part: Expr<'g>, by: Expr<'g>) -> Expr<'g> {
     let mut known = Memo::new(e.graph());
     known.assign_number(part.id(), by.id());
-    replace_in_expression(e, &mut known, &|_| None, &|f, x| x.apply_function(f))
+    substitute_in_expression(e, &mut known, &|_| None, &|f, x| x.apply_function(f))
 }
 
-fn replace_in_expression<'g>(
+fn substitute_in_expression<'g>(
     e: Expr<'g>,
     known: &mut Memo<'g>,
     by: &dyn Fn(Symbol) -> Option<Expr<'g>>,
-    call: Call<'_, 'g>,
+    call: CallReplacement<'_, 'g>,
 ) -> Expr<'g> {
     let graph = e.graph();
     // Operands before operations, without recursion.
@@ -70,7 +73,7 @@ fn rebuild_node<'g>(
     id: Id,
     known: &Memo<'g>,
     by: &dyn Fn(Symbol) -> Option<Expr<'g>>,
-    call: Call<'_, 'g>,
+    call: CallReplacement<'_, 'g>,
 ) -> Expr<'g> {
     let replaced_operand = |a: Id| graph.expr(known.get(a).unwrap_or(a));
     match graph.node(id) {

@@ -116,17 +116,17 @@ impl<'g> Rotation<'g> {
     }
 
     /// Transforms a vector from the child to the parent frame.
-    pub fn to_parent(&self, v: Vec3<'g>) -> Vec3<'g> {
+    pub fn vector_in_parent_axes(&self, v: Vec3<'g>) -> Vec3<'g> {
         self.steps.iter().rev().fold(v, |v, step| step.rotate_vector(v))
     }
 
     /// Transforms a vector from the parent to the child frame.
-    pub fn to_child(&self, v: Vec3<'g>) -> Vec3<'g> {
+    pub fn vector_in_child_axes(&self, v: Vec3<'g>) -> Vec3<'g> {
         self.steps.iter().fold(v, |v, step| step.inverse().rotate_vector(v))
     }
 
     /// Transforms a symmetric tensor from the child to the parent frame: `R X Rᵀ`.
-    pub fn sym_to_parent(&self, x: Sym3<'g>) -> Sym3<'g> {
+    pub fn symmetric_tensor_in_parent_axes(&self, x: Sym3<'g>) -> Sym3<'g> {
         self.steps.iter().rev().fold(x, |x, step| step.rotate_symmetric_tensor(x))
     }
 
@@ -182,7 +182,7 @@ impl<'g> Rotation<'g> {
     /// Returns the rotation matrix, whose columns are the child's axes in the parent frame.
     pub fn rotation_matrix(&self) -> Mat3<'g> {
         let columns: [Vec3<'g>; 3] =
-            std::array::from_fn(|k| self.to_parent(Vec3::coordinate_axis(self.graph, k)));
+            std::array::from_fn(|k| self.vector_in_parent_axes(Vec3::coordinate_axis(self.graph, k)));
         Mat3::from_fn(|i, j| columns[j][i])
     }
 }
@@ -312,7 +312,7 @@ impl<'g> RotationStep<'g> {
     fn angular_velocity(&self, rate: &mut dyn FnMut(Expr<'g>) -> Expr<'g>) -> Vec3<'g> {
         match *self {
             RotationStep::Axis { axis, sin, cos } => {
-                let speed = match angle_of_sine(sin) {
+                let speed = match angle_if_sine(sin) {
                     Some(angle) => rate(angle),
                     None => cos * rate(sin) - sin * rate(cos),
                 };
@@ -420,11 +420,11 @@ impl<'g> RotationStep<'g> {
 }
 
 /// Returns the angle of an expression that is a sine, or the negative of a sine.
-fn angle_of_sine(sin: Expr<'_>) -> Option<Expr<'_>> {
+fn angle_if_sine(sin: Expr<'_>) -> Option<Expr<'_>> {
     let graph = sin.graph();
     match sin.node() {
         Node::Call(Function::Sin, angle) => Some(graph.expr(angle)),
-        Node::Neg(inner) => angle_of_sine(graph.expr(inner)).map(|angle| -angle),
+        Node::Neg(inner) => angle_if_sine(graph.expr(inner)).map(|angle| -angle),
         _ => None,
     }
 }
@@ -473,9 +473,13 @@ mod tests {
         ] {
             let m = Mat3(numeric_matrix(&rotation).map(|r| r.map(|c| g.num(c))));
             let full = m * tensor.full_matrix() * m.transpose();
-            let pairs = (0..3).map(|i| ((m * v)[i], rotation.to_parent(v)[i])).chain(
-                (0..9).map(|k| (full.0[k / 3][k % 3], rotation.sym_to_parent(tensor).entry(k / 3, k % 3))),
-            );
+            let pairs =
+                (0..3).map(|i| ((m * v)[i], rotation.vector_in_parent_axes(v)[i])).chain((0..9).map(|k| {
+                    (
+                        full.0[k / 3][k % 3],
+                        rotation.symmetric_tensor_in_parent_axes(tensor).entry(k / 3, k % 3),
+                    )
+                }));
             for (a, b) in pairs {
                 assert!((a.constant_value().unwrap() - b.constant_value().unwrap()).abs() < 1e-14);
             }

@@ -18,6 +18,6 @@ pub fn sample_of_symbol(symbol: Symbol, seed: u64) -> f64 {
 }
 
 /// Returns true if an expression equals `value`, within the tolerance, at three samples.
-pub fn always_equals(e: Expr<'_>, value: f64) -> bool {
+pub fn always_equals_number(e: Expr<'_>, value: f64) -> bool {
     (0..3).all(|seed| (eval_one(e, &|s| sample_of_symbol(s, seed)) - value).abs() <= TOLERANCE)
 }

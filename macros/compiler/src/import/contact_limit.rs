@@ -3,7 +3,8 @@
 use crate::hull::{Hull, MAX_VERTICES};
 use crate::syntax::contact::{MAX_CONTACT_POINTS, select_collisions};
 use crate::syntax::{
-    Collision, Contact, Description, Expr, ExprKind, FileContactKind, Key, Method, SurfaceId, SurfaceSize,
+    BodyOrInertiaMethod, Collision, Contact, Description, Expr, ExprKind, FileContactKind, Key, SurfaceId,
+    SurfaceSize,
 };
 
 /// Maximum number of names in a line of the documentation.
@@ -17,11 +18,16 @@ pub(super) fn select_contacts(description: &mut Description) {
     let (contacts, collisions) = (&description.contacts, &description.collisions);
     let counts: Vec<usize> =
         contacts.iter().map(|contact| contact_point_count(contact, collisions).unwrap_or(0)).collect();
-    let bounds_of_stops =
-        description.limits.iter().filter(|limit| limit.arguments.get(Key::Restitution).is_some());
+    let bounds_of_stops = description
+        .limits
+        .iter()
+        .filter(|limit| limit.arguments.expression_of_key(Key::Restitution).is_some());
     let stops: usize = bounds_of_stops
         .map(|limit| {
-            [Key::From, Key::To].into_iter().filter(|key| limit.arguments.get(*key).is_some()).count()
+            [Key::From, Key::To]
+                .into_iter()
+                .filter(|key| limit.arguments.expression_of_key(*key).is_some())
+                .count()
         })
         .sum();
     let mut used = stops;
@@ -32,17 +38,22 @@ pub(super) fn select_contacts(description: &mut Description) {
             _ => used += counts[k],
         }
     }
-    let kind = |k: usize| contacts[k].of_file.map(|of_file| of_file.kind);
-    let distance = |k: usize| contacts[k].of_file.map_or(0.0, |of_file| of_file.distance);
-    optional.sort_by(|a, b| kind(*a).cmp(&kind(*b)).then(distance(*a).total_cmp(&distance(*b))));
-    let is_connected = |k: usize| kind(k) == Some(FileContactKind::Connected);
-    let connected_points: usize = optional.iter().filter(|k| is_connected(**k)).map(|k| counts[*k]).sum();
+    let file_contact_kind = |k: usize| contacts[k].of_file.map(|of_file| of_file.kind);
+    let file_contact_distance = |k: usize| contacts[k].of_file.map_or(0.0, |of_file| of_file.distance);
+    optional.sort_by(|a, b| {
+        file_contact_kind(*a)
+            .cmp(&file_contact_kind(*b))
+            .then(file_contact_distance(*a).total_cmp(&file_contact_distance(*b)))
+    });
+    let is_between_connected_bodies = |k: usize| file_contact_kind(k) == Some(FileContactKind::Connected);
+    let connected_points: usize =
+        optional.iter().filter(|k| is_between_connected_bodies(**k)).map(|k| counts[*k]).sum();
     let mut omitted = vec![false; contacts.len()];
     let (mut excess, mut connected_excess) = (Vec::new(), 0);
     let mut connected_fit = None;
     for k in optional {
         let free = MAX_CONTACT_POINTS.saturating_sub(used);
-        let fits = match is_connected(k) {
+        let fits = match is_between_connected_bodies(k) {
             true => *connected_fit.get_or_insert(connected_points <= free),
             false => counts[k] <= free,
         };
@@ -50,7 +61,7 @@ pub(super) fn select_contacts(description: &mut Description) {
             used += counts[k];
         } else {
             omitted[k] = true;
-            match is_connected(k) {
+            match is_between_connected_bodies(k) {
                 true => connected_excess += 1,
                 false => excess.push(contacts[k].name.text.clone()),
             }
@@ -79,9 +90,9 @@ pub(super) fn list_first_names(what: &str, names: &[String]) -> String {
 }
 
 /// Returns the number of friction moments of a contact, and one for the contact itself.
-pub(super) fn contact_and_moment_count(contact: &Contact) -> usize {
-    let count_of_argument = |key| usize::from(contact.arguments.get(key).is_some());
-    1 + count_of_argument(Key::TorsionalFriction) + count_of_argument(Key::RollingFriction)
+pub(super) fn one_plus_friction_moment_count(contact: &Contact) -> usize {
+    let one_if_argument_given = |key| usize::from(contact.arguments.expression_of_key(key).is_some());
+    1 + one_if_argument_given(Key::TorsionalFriction) + one_if_argument_given(Key::RollingFriction)
 }
 
 /// Returns the number of contact points of a contact, with its moments of friction; `None` if a pair of its
@@ -97,7 +108,7 @@ pub(super) fn contact_point_count(contact: &Contact, collisions: &[Collision]) -
             points += first.contact_point_count(second)?;
         }
     }
-    Some(points * contact_and_moment_count(contact))
+    Some(points * one_plus_friction_moment_count(contact))
 }
 
 /// Returns the numbers of vertices and corners of the surfaces of one side of a contact.
@@ -105,17 +116,17 @@ fn surface_sizes(surface: &Expr, collisions: &[Collision]) -> Vec<SurfaceSize> {
     if let Some(selected) = select_collisions(surface, collisions) {
         return selected
             .into_iter()
-            .map(|k| sized_surface(Some(collisions[k].shape.surface()), &collisions[k].hull))
+            .map(|k| surface_size(Some(collisions[k].shape.surface()), &collisions[k].hull))
             .collect();
     }
-    let ExprKind::Method(_, member, arguments) = &surface.kind else { return vec![sized_surface(None, &[])] };
-    let Some(Method::Surface(id)) = member.id else { return vec![sized_surface(None, &[])] };
+    let ExprKind::Method(_, member, arguments) = &surface.kind else { return vec![surface_size(None, &[])] };
+    let Some(BodyOrInertiaMethod::Surface(id)) = member.id else { return vec![surface_size(None, &[])] };
     let points = match arguments.first().map(|points| &points.kind) {
         Some(ExprKind::Array(points)) if id == SurfaceId::Hull => points.as_slice(),
         _ => &[],
     };
     let vertices: Option<Vec<[f64; 3]>> = points.iter().map(constant_vector).collect();
-    let size = sized_surface(Some(id), &vertices.unwrap_or_default());
+    let size = surface_size(Some(id), &vertices.unwrap_or_default());
     vec![SurfaceSize { vertices: points.len(), ..size }]
 }
 
@@ -128,7 +139,7 @@ fn constant_vector(e: &Expr) -> Option<[f64; 3]> {
 
 /// Returns the form of a surface with its numbers of vertices and of corners of the largest face; `vertices`
 /// are those of a hull.
-fn sized_surface(id: Option<SurfaceId>, vertices: &[[f64; 3]]) -> SurfaceSize {
+fn surface_size(id: Option<SurfaceId>, vertices: &[[f64; 3]]) -> SurfaceSize {
     let corners = match id {
         Some(SurfaceId::Cuboid) => 4,
         Some(SurfaceId::Hull) => Hull::new(vertices, MAX_VERTICES)

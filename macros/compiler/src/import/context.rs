@@ -24,7 +24,7 @@ struct File<'a> {
 
 /// Piece of the text composed of several files that is copied from one file.
 #[derive(Clone, Copy)]
-pub(super) struct Piece {
+pub(super) struct ComposedTextPiece {
     /// Offset of the piece in the text composed of several files, bytes.
     pub(super) start: usize,
     /// Index of the file from which the piece is copied.
@@ -36,7 +36,7 @@ pub(super) struct Piece {
 /// Positions in a file, or in a text composed of several files, and the errors found so far.
 pub(super) struct Cx<'a> {
     files: Vec<File<'a>>,
-    pieces: Vec<Piece>,
+    pieces: Vec<ComposedTextPiece>,
     span: Span,
     /// Difference between the parsed text and the file: offset of the insertion, number of bytes, number of
     /// characters.
@@ -50,7 +50,7 @@ pub(super) struct Cx<'a> {
 impl<'a> Cx<'a> {
     /// Creates the import context of the file `text` at `path`.
     pub(super) fn new(text: &'a str, path: &Name, diagnostics: &'a mut Diagnostics) -> Cx<'a> {
-        let piece = Piece { start: 0, file: 0, offset: 0 };
+        let piece = ComposedTextPiece { start: 0, file: 0, offset: 0 };
         Cx::from_pieces(&[(text, &path.text)], vec![piece], path.place.span, diagnostics)
     }
 
@@ -58,7 +58,7 @@ impl<'a> Cx<'a> {
     /// each file; the first piece starts at offset zero.
     pub(super) fn from_pieces(
         files: &[(&'a str, &str)],
-        pieces: Vec<Piece>,
+        pieces: Vec<ComposedTextPiece>,
         span: Span,
         diagnostics: &'a mut Diagnostics,
     ) -> Cx<'a> {
@@ -77,7 +77,7 @@ impl<'a> Cx<'a> {
 
     /// Declares that the parsed text differs from the file: `more`, a text without line breaks, is inserted
     /// at byte `offset`. Later positions refer to the parsed text.
-    pub(super) fn add(&mut self, offset: usize, more: &str) {
+    pub(super) fn record_inserted_text(&mut self, offset: usize, more: &str) {
         self.added = (offset, more.len(), more.chars().count() as u32);
     }
 
@@ -94,21 +94,21 @@ impl<'a> Cx<'a> {
     pub(super) fn source_position(&self, offset: usize) -> Place {
         let (file, offset) = self.offset_in_file(offset);
         let (line, column) = self.files[file].line_and_column(offset);
-        self.place_at(file, line, column)
+        self.place_of_line_and_column(file, line, column)
     }
 
     /// Returns the source position for a line and a column of the parsed text, both counted from one.
-    pub(super) fn place_in_parsed_text(&self, line: u32, column: u32) -> Place {
+    pub(super) fn source_position_from_parsed_text(&self, line: u32, column: u32) -> Place {
         let (start, _, characters) = self.added;
         let (first, from) = self.files[0].line_and_column(start);
         if line != first || column <= from {
-            return self.place_at(0, line, column);
+            return self.place_of_line_and_column(0, line, column);
         }
-        self.place_at(0, line, column.saturating_sub(characters).max(from))
+        self.place_of_line_and_column(0, line, column.saturating_sub(characters).max(from))
     }
 
     /// Returns the source position for a line and a column of a file, both counted from one.
-    fn place_at(&self, file: usize, line: u32, column: u32) -> Place {
+    fn place_of_line_and_column(&self, file: usize, line: u32, column: u32) -> Place {
         let file = Some(FilePosition { file: self.files[file].path.clone(), line, column });
         Place { span: self.span, end: self.span, file }
     }
@@ -116,7 +116,7 @@ impl<'a> Cx<'a> {
     /// Returns the source position of the end of the file.
     pub(super) fn end_of_file(&self) -> Place {
         let (line, column) = self.files[0].line_and_column(usize::MAX);
-        self.place_at(0, line, column)
+        self.place_of_line_and_column(0, line, column)
     }
 
     /// Returns the text of the file in a range of the parsed text. Returns `None` if the range spans several
@@ -167,7 +167,7 @@ impl<'a> Cx<'a> {
 
     /// Reports an internal error: something that was read from the file has no counterpart in the mechanism,
     /// although no error was reported.
-    pub(super) fn report_lost_element(&mut self, name: &Name) {
+    pub(super) fn report_internal_loss_of_element(&mut self, name: &Name) {
         let message = format!("internal error: {} of the file is lost", quote_word(&name.text));
         self.report_error(&name.place, message, |d| d.add_help("please report this with the file"));
     }

@@ -31,7 +31,7 @@ pub(super) fn child_elements<'a>(node: Node<'a>) -> impl Iterator<Item = Node<'a
 
 /// Returns the child elements named in `known`, at most one of each. Other children are ignored, unless their
 /// name looks like a typing error: to ignore `<inertal>` would silently remove a body's mass.
-pub(super) fn children_with_known_names<'a, const N: usize>(
+pub(super) fn child_for_each_name<'a, const N: usize>(
     node: Node<'a>,
     known: [&str; N],
     cx: &mut Cx<'_>,
@@ -42,7 +42,7 @@ pub(super) fn children_with_known_names<'a, const N: usize>(
         match known.iter().position(|k| *k == name) {
             Some(k) if found[k].is_none() => found[k] = Some(child),
             Some(k) => report_duplicate(child, found[k], cx),
-            None => check_element_name(child, &known, cx),
+            None => report_misspelt_element_name(child, &known, cx),
         }
     }
     found
@@ -58,7 +58,7 @@ pub(super) fn report_duplicate(child: Node<'_>, first: Option<Node<'_>>, cx: &mu
 }
 
 /// Reports an element whose name is similar to, but not in, `known`.
-pub(super) fn check_element_name(node: Node<'_>, known: &[&str], cx: &mut Cx<'_>) {
+pub(super) fn report_misspelt_element_name(node: Node<'_>, known: &[&str], cx: &mut Cx<'_>) {
     if known.contains(&node.tag_name().name()) {
         return;
     }
@@ -74,7 +74,12 @@ pub(super) fn check_element_name(node: Node<'_>, known: &[&str], cx: &mut Cx<'_>
 
 /// Reports missing required attributes and misspelt attributes. A misspelt required attribute is one error,
 /// not two.
-pub(super) fn check_attributes(node: Node<'_>, required: &[&str], optional: &[&str], cx: &mut Cx<'_>) {
+pub(super) fn report_missing_or_misspelt_attributes(
+    node: Node<'_>,
+    required: &[&str],
+    optional: &[&str],
+    cx: &mut Cx<'_>,
+) {
     let mut missing: Vec<&str> = required.iter().copied().filter(|name| !node.has_attribute(*name)).collect();
     let is_known_attribute = |name: &str| required.contains(&name) || optional.contains(&name);
     for attribute in node.attributes().filter(|a| a.namespace().is_none() && !is_known_attribute(a.name())) {
@@ -91,7 +96,7 @@ pub(super) fn check_attributes(node: Node<'_>, required: &[&str], optional: &[&s
     if !missing.is_empty() {
         let message =
             format!("{} without {}", quoted_tag(node), quote_first_eight_words(missing.into_iter()));
-        let help = expected_element_text(node.tag_name().name(), required);
+        let help = expected_element_help(node.tag_name().name(), required);
         cx.report_error(&element_source_position(node, cx), message, |d| d.add_help(help));
     }
 }
@@ -108,21 +113,21 @@ pub(super) fn report_unexpected_contents(
     let all = [required, optional].concat();
     let is_accepted_attribute = |name: &str| all.contains(&name) || foreign.contains(&name);
     let help =
-        expected_element_text(node.tag_name().name(), if required.is_empty() { optional } else { required });
+        expected_element_help(node.tag_name().name(), if required.is_empty() { optional } else { required });
     let unknown = node.attributes().find(|a| a.namespace().is_none() && !is_accepted_attribute(a.name()));
-    if let Some(child) = nonblank_known_contents(node).next() {
+    if let Some(child) = nonblank_texts_and_own_elements(node).next() {
         report_meaningless_node(child, node, help, cx);
     } else if let Some(attribute) = unknown.filter(|a| nearest_candidate(a.name(), &all).is_none()) {
         let message = format!("unknown attribute {} of {}", quote_word(attribute.name()), quoted_tag(node));
         let place = cx.source_position(attribute.range().start);
         cx.report_error(&place, message, |d| d.add_help(help));
     } else {
-        check_attributes(node, required, optional, cx);
+        report_missing_or_misspelt_attributes(node, required, optional, cx);
     }
 }
 
 /// Returns the texts that are not blank and the elements of the file's own vocabulary in an element.
-pub(super) fn nonblank_known_contents<'a>(node: Node<'a>) -> impl Iterator<Item = Node<'a>> {
+pub(super) fn nonblank_texts_and_own_elements<'a>(node: Node<'a>) -> impl Iterator<Item = Node<'a>> {
     node.children().filter(move |child| match child.is_text() {
         true => child.text().is_some_and(|text| !text.trim().is_empty()),
         false => child.is_element() && child.tag_name().namespace() == node.tag_name().namespace(),
@@ -143,7 +148,7 @@ fn report_meaningless_node(child: Node<'_>, node: Node<'_>, help: impl Into<Stri
 
 /// Reports attributes that are not in `known` on an element whose values are text or child elements.
 pub(super) fn check_attributes_of_value_element(node: Node<'_>, known: &[&str], cx: &mut Cx<'_>) {
-    check_attributes(node, &[], known, cx);
+    report_missing_or_misspelt_attributes(node, &[], known, cx);
     let unknown = node.attributes().filter(|a| a.namespace().is_none() && !known.contains(&a.name()));
     for attribute in unknown.filter(|a| nearest_candidate(a.name(), known).is_none()) {
         let message = format!("unknown attribute {} of {}", quote_word(attribute.name()), quoted_tag(node));
@@ -153,7 +158,7 @@ pub(super) fn check_attributes_of_value_element(node: Node<'_>, known: &[&str], 
     }
 }
 
-fn expected_element_text(element: &str, attributes: &[&str]) -> String {
+fn expected_element_help(element: &str, attributes: &[&str]) -> String {
     let attributes: String = attributes.iter().map(|name| format!(" {name}=\"…\"")).collect();
     format!("expected `<{element}{attributes}/>`")
 }
@@ -170,7 +175,7 @@ pub(super) fn required_child<'a>(
     if child.is_none() {
         let message = format!("{} without `<{element}>`", quoted_tag(node));
         cx.report_error(&element_source_position(node, cx), message, |d| {
-            d.add_help(expected_element_text(element, attributes))
+            d.add_help(expected_element_help(element, attributes))
         });
     }
     child
@@ -215,9 +220,9 @@ pub(super) fn read_numbers_content<const N: usize>(
     node: Node<'_>,
     cx: &mut Cx<'_>,
 ) -> Option<Located<[f64; N]>> {
-    let mut all = nonblank_known_contents(node);
+    let mut all = nonblank_texts_and_own_elements(node);
     let text = all.next().filter(Node::is_text);
-    if let Some(other) = nonblank_known_contents(node).find(Node::is_element).or(all.next()) {
+    if let Some(other) = nonblank_texts_and_own_elements(node).find(Node::is_element).or(all.next()) {
         report_meaningless_node(other, node, "expected numbers, and comments before or after them", cx);
         return None;
     }
@@ -229,7 +234,7 @@ pub(super) fn read_numbers_content<const N: usize>(
 
 /// Returns the trimmed text of an element with its source position; `None` if it is empty.
 pub(super) fn read_trimmed_content(node: Node<'_>, cx: &Cx<'_>) -> Option<Name> {
-    let found = nonblank_known_contents(node).find(Node::is_text)?;
+    let found = nonblank_texts_and_own_elements(node).find(Node::is_text)?;
     let whole = found.text()?;
     let before = whole.len() - whole.trim_start().len();
     let text = whole.trim().to_string();

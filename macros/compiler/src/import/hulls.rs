@@ -2,10 +2,10 @@
 //! Only these meshes are read.
 
 use super::contact_limit::{
-    contact_and_moment_count, contact_point_count, list_first_names, select_contacts,
+    contact_point_count, list_first_names, one_plus_friction_moment_count, select_contacts,
 };
 use super::mesh;
-use super::pose::{Vector, add, matrix_times_vector};
+use super::pose::{Vector, matrix_times_vector, vector_sum};
 use crate::diag::Diagnostics;
 use crate::hull::{Hull, HullError, MAX_VERTICES};
 use crate::syntax::contact::{MAX_CONTACT_POINTS, select_collisions};
@@ -31,18 +31,21 @@ pub fn read_hulls(description: &mut Description, folder: &Path, cx: &mut Diagnos
     let mut notes = Vec::new();
     for contact in &mut description.contacts {
         for side in [&mut contact.first, &mut contact.second] {
-            replace_hull_file(side, folder, (&mut files, &mut notes), cx);
+            replace_hull_file_by_vertices(side, folder, (&mut files, &mut notes), cx);
         }
     }
     let is_mesh = |part: &Collision| part.shape == Shape::Mesh && part.mesh.is_some();
-    let share = vertices_per_mesh(&description.contacts, &description.collisions);
+    let share = max_vertices_per_mesh(&description.contacts, &description.collisions);
     // Vertices allowed for each mesh, zero if no contact uses it, and whether a mechanism without its hull is
     // an error. Declared contacts take precedence over contacts of the file with planes, and these over other
     // contacts of the file.
     let mut maxima = vec![(0, false); description.collisions.len()];
-    let source = |contact: &Contact| contact.of_file.map(|of_file| of_file.kind == FileContactKind::Plane);
+    let is_file_contact_with_plane =
+        |contact: &Contact| contact.of_file.map(|of_file| of_file.kind == FileContactKind::Plane);
     for (kind, most) in [(Some(false), MAX_VERTICES), (Some(true), share), (None, MAX_VERTICES)] {
-        for contact in description.contacts.iter().filter(|contact| source(contact) == kind) {
+        for contact in
+            description.contacts.iter().filter(|contact| is_file_contact_with_plane(contact) == kind)
+        {
             for side in [&contact.first, &contact.second] {
                 for k in select_collisions(side, &description.collisions).unwrap_or_default() {
                     maxima[k] = (most, kind.is_none());
@@ -63,14 +66,14 @@ pub fn read_hulls(description: &mut Description, folder: &Path, cx: &mut Diagnos
             part.hull = hull.vertices;
         }
     }
-    omit_meshes_without_hull(description, share);
+    omit_contacts_without_hulls(description, share);
     select_contacts(description);
     description.left_out.extend(notes);
     files
 }
 
 /// Replaces the file of `body.hull("…")` by the vertices of the hull.
-fn replace_hull_file(
+fn replace_hull_file_by_vertices(
     surface: &mut Expr,
     folder: &Path,
     (files, notes): (&mut Vec<PathBuf>, &mut Vec<String>),
@@ -79,7 +82,7 @@ fn replace_hull_file(
     let ExprKind::Method(_, _, arguments) = &mut surface.kind else { return };
     let [Expr { kind: ExprKind::Text(path), place }] = arguments.as_slice() else { return };
     let name = Name { text: path.clone(), place: place.clone() };
-    let source = MeshVertices::scaled(name, mesh::candidate_paths(folder, path), [1.0; 3]);
+    let source = MeshVertices::scaled_vertices_of_file(name, mesh::candidate_paths(folder, path), [1.0; 3]);
     if let Some((hull, count)) = hull_of_mesh(&source, (MAX_VERTICES, true), files, cx) {
         notes.extend(omitted_vertices_note(&format!("the mesh `{path}`"), &hull, count));
         let points = hull.vertices.iter().map(|p| Expr::vector_at(*p, place)).collect();
@@ -126,7 +129,7 @@ fn hull_of_mesh(
         }
         files.push(path.clone());
     }
-    points.iter_mut().for_each(|p| *p = add(matrix_times_vector(&source.linear, *p), source.offset));
+    points.iter_mut().for_each(|p| *p = vector_sum(matrix_times_vector(&source.linear, *p), source.offset));
     points.sort_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
     points.dedup();
     match Hull::new(&points, maximum) {
@@ -164,7 +167,7 @@ fn describe_hull_error(error: HullError) -> String {
 
 /// Returns the number of vertices for each mesh in the contacts with planes that the file declares: the
 /// maximum number of contact points without those of other shapes, divided by the number of meshes.
-fn vertices_per_mesh(contacts: &[Contact], collisions: &[Collision]) -> usize {
+fn max_vertices_per_mesh(contacts: &[Contact], collisions: &[Collision]) -> usize {
     let (mut others, mut meshes) = (0, 0);
     let is_on_plane =
         |contact: &&Contact| contact.of_file.is_some_and(|of_file| of_file.kind == FileContactKind::Plane);
@@ -172,7 +175,7 @@ fn vertices_per_mesh(contacts: &[Contact], collisions: &[Collision]) -> usize {
         // Meshes have no vertices yet.
         match contact_point_count(contact, collisions) {
             Some(points) if points > 0 => others += points,
-            _ => meshes += contact_and_moment_count(contact),
+            _ => meshes += one_plus_friction_moment_count(contact),
         }
     }
     (MAX_CONTACT_POINTS.saturating_sub(others) / meshes.max(1)).min(MAX_VERTICES)
@@ -180,7 +183,7 @@ fn vertices_per_mesh(contacts: &[Contact], collisions: &[Collision]) -> usize {
 
 /// Removes the contacts of the file whose mesh has no hull: there are too many meshes, so that each has at
 /// most `share` vertices, or no convex hull represents the mesh.
-fn omit_meshes_without_hull(description: &mut Description, share: usize) {
+fn omit_contacts_without_hulls(description: &mut Description, share: usize) {
     let collisions = &description.collisions;
     let has_hulls = |contact: &Contact| {
         let sides = [&contact.first, &contact.second].into_iter();

@@ -2,7 +2,9 @@
 
 use crate::diag::Place;
 use crate::syntax::file_parameters::FileField;
-use crate::syntax::{Body, Collision, Constraint, Contact, Drive, Expr, Joint, Limit, Name, Visual};
+use crate::syntax::{
+    Body, Collision, Constraint, Contact, Expr, FileForceElement, Joint, Limit, Name, Visual,
+};
 use std::path::PathBuf;
 
 /// Mechanism that a robot file describes.
@@ -14,7 +16,7 @@ pub struct ImportedMechanism {
     /// sorted by name.
     pub joints: Vec<Joint>,
     /// Springs, dampers, rotors and motors on joint coordinates.
-    pub drives: Vec<Drive>,
+    pub drives: Vec<FileForceElement>,
     /// Rayleigh dissipation functions: damping of ball and free joints, and drag of the surrounding fluid.
     pub dissipations: Vec<(Name, Expr)>,
     /// Constraints on joint coordinates of the file.

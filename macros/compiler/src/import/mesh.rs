@@ -1,7 +1,7 @@
 //! Mesh files: STL, OBJ and MuJoCo's own format. This module knows no format of robot files.
 
 use super::context::quote_word;
-use super::pose::{Vector, add, length, vector_times_scalar};
+use super::pose::{Vector, vector_norm, vector_sum, vector_times_scalar};
 use std::fs;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -30,7 +30,7 @@ pub(super) fn candidate_paths(folder: &Path, uri: &str) -> Vec<PathBuf> {
 /// Reads the triangles of a mesh file, or returns an error message. `name` is the path for messages.
 pub(super) fn read_triangles(path: &Path, name: &str) -> Result<Vec<Triangle>, String> {
     let shown = quote_word(name);
-    let bytes = read_bytes(path).map_err(|why| format!("cannot read the mesh {shown}: {why}"))?;
+    let bytes = read_mesh_file_bytes(path).map_err(|why| format!("cannot read the mesh {shown}: {why}"))?;
     let end = path.extension().map(|end| end.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
     let triangles = match end.as_str() {
         "stl" => read_stl(&bytes),
@@ -43,7 +43,7 @@ pub(super) fn read_triangles(path: &Path, name: &str) -> Result<Vec<Triangle>, S
     triangles.ok_or_else(|| format!("mesh {shown} is damaged, or has the wrong extension"))
 }
 
-fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
+fn read_mesh_file_bytes(path: &Path) -> Result<Vec<u8>, String> {
     let about = fs::metadata(path).map_err(|error| error.to_string())?;
     if !about.is_file() {
         return Err("it is not a regular file".to_string());
@@ -95,8 +95,8 @@ fn read_stl_text(text: &str) -> Option<Vec<Triangle>> {
     for line in text.lines() {
         let mut words = line.split_ascii_whitespace();
         if words.next() == Some("vertex") {
-            let mut number = || words.next()?.parse::<f64>().ok();
-            corners.push([number()?, number()?, number()?]);
+            let mut next_number = || words.next()?.parse::<f64>().ok();
+            corners.push([next_number()?, next_number()?, next_number()?]);
         }
     }
     let triangles: Vec<Triangle> = corners.chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect();
@@ -129,8 +129,8 @@ pub(super) fn read_obj(bytes: &[u8]) -> Option<Vec<Triangle>> {
         let mut words = line.split_ascii_whitespace();
         match words.next() {
             Some("v") => {
-                let mut number = || Some(f64::from(words.next()?.parse::<f32>().ok()?));
-                vertices.push([number()?, number()?, number()?]);
+                let mut next_number = || Some(f64::from(words.next()?.parse::<f32>().ok()?));
+                vertices.push([next_number()?, next_number()?, next_number()?]);
             }
             Some("f") => {
                 let referenced_vertex = |word: &str| {
@@ -151,7 +151,8 @@ pub(super) fn read_obj(bytes: &[u8]) -> Option<Vec<Triangle>> {
 fn triangulate_face(corners: &[Vector], triangles: &mut Vec<Triangle>) -> Option<()> {
     match corners {
         [a, b, c, d] => {
-            let distance_of_points = |a: &Vector, b: &Vector| length(add(*a, vector_times_scalar(*b, -1.0)));
+            let distance_of_points =
+                |a: &Vector, b: &Vector| vector_norm(vector_sum(*a, vector_times_scalar(*b, -1.0)));
             if distance_of_points(a, c) < distance_of_points(b, d) {
                 triangles.extend([[*a, *b, *c], [*a, *c, *d]]);
             } else {

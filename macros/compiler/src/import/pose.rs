@@ -16,27 +16,27 @@ const ROUNDING: f64 = 1e-15;
 
 /// Pose of a frame relative to a reference frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::import) struct FilePose {
+pub(in crate::import) struct NumericPose {
     /// Origin of the frame, in the axes of the reference frame.
     pub(in crate::import) at: Vector,
     /// Rotation matrix; its columns are the axes of the frame.
     pub(in crate::import) axes: Matrix,
 }
 
-impl FilePose {
+impl NumericPose {
     /// Pose of a frame that coincides with its reference frame.
-    pub(in crate::import) const ZERO: FilePose = FilePose { at: [0.0; 3], axes: IDENTITY };
+    pub(in crate::import) const ZERO: NumericPose = NumericPose { at: [0.0; 3], axes: IDENTITY };
 
     /// Returns the inverse: the pose of the reference frame relative to this frame.
-    pub(in crate::import) fn inverse_pose(&self) -> FilePose {
+    pub(in crate::import) fn inverse_pose(&self) -> NumericPose {
         let axes = transpose(&self.axes);
-        FilePose { at: vector_times_scalar(matrix_times_vector(&axes, self.at), -1.0), axes }
+        NumericPose { at: vector_times_scalar(matrix_times_vector(&axes, self.at), -1.0), axes }
     }
 
     /// Composes two poses. `inner` is relative to this frame, the result to the reference frame.
-    pub(in crate::import) fn compose_with(&self, inner: &FilePose) -> FilePose {
-        FilePose {
-            at: add(self.at, matrix_times_vector(&self.axes, inner.at)),
+    pub(in crate::import) fn compose_with(&self, inner: &NumericPose) -> NumericPose {
+        NumericPose {
+            at: vector_sum(self.at, matrix_times_vector(&self.axes, inner.at)),
             axes: matrix_product(&self.axes, &inner.axes),
         }
     }
@@ -44,7 +44,7 @@ impl FilePose {
     /// Returns the coordinates of a free joint in this pose: the position and the quaternion (x, y, z, w).
     /// Empty for the identity, which is the neutral configuration.
     pub(in crate::import) fn free_joint_coordinates(&self) -> Vec<f64> {
-        if *self == FilePose::ZERO {
+        if *self == NumericPose::ZERO {
             return Vec::new();
         }
         let [w, x, y, z] = quaternion_of_rotation(&self.axes);
@@ -53,7 +53,7 @@ impl FilePose {
 }
 
 /// Returns the sum of two numeric vectors.
-pub(in crate::import) fn add(a: Vector, b: Vector) -> Vector {
+pub(in crate::import) fn vector_sum(a: Vector, b: Vector) -> Vector {
     std::array::from_fn(|k| a[k] + b[k])
 }
 
@@ -73,7 +73,7 @@ pub(in crate::import) fn cross(a: Vector, b: Vector) -> Vector {
 }
 
 /// Returns the Euclidean norm of a vector.
-pub(in crate::import) fn length(a: Vector) -> f64 {
+pub(in crate::import) fn vector_norm(a: Vector) -> f64 {
     libm::hypot(libm::hypot(a[0], a[1]), a[2])
 }
 
@@ -156,7 +156,7 @@ fn sin_cos(angle: f64) -> (f64, f64) {
 /// Returns the smallest rotation that maps the z axis to `direction`.
 pub(in crate::import) fn rotation_from_z(direction: Vector) -> Matrix {
     let axis = cross([0.0, 0.0, 1.0], direction);
-    let size = length(axis);
+    let size = vector_norm(axis);
     let axis = if size < 1e-10 { [1.0, 0.0, 0.0] } else { vector_times_scalar(axis, 1.0 / size) };
     axis_rotation(axis, libm::atan2(size, direction[2]))
 }

@@ -1,6 +1,6 @@
 //! Texts composed of pieces of several files, each with its file of origin. This module knows no file format.
 
-use super::context::{Cx, Piece, format_position, quote_word};
+use super::context::{ComposedTextPiece, Cx, format_position, quote_word};
 use super::element::Node;
 use super::imported::ImportedMechanism;
 use super::{LARGEST_FILE, file, xml};
@@ -31,7 +31,7 @@ pub(super) struct ComposedText {
     /// Text of the robot file with its included files so far.
     pub(super) text: String,
     /// Pieces of the text, each with its file of origin.
-    pub(super) pieces: Vec<Piece>,
+    pub(super) pieces: Vec<ComposedTextPiece>,
 }
 
 impl ComposedText {
@@ -52,7 +52,7 @@ impl ComposedText {
         cx: &mut Diagnostics,
     ) -> Option<()> {
         let piece = self.files.get(file)?.text.get(from..to)?;
-        self.pieces.push(Piece { start: self.text.len(), file, offset: from });
+        self.pieces.push(ComposedTextPiece { start: self.text.len(), file, offset: from });
         self.text.push_str(piece);
         self.check_text_size(name, cx)
     }
@@ -65,7 +65,7 @@ impl ComposedText {
         name: &Name,
         cx: &mut Diagnostics,
     ) -> Option<()> {
-        self.pieces.push(Piece { start: self.text.len(), file, offset });
+        self.pieces.push(ComposedTextPiece { start: self.text.len(), file, offset });
         self.text.push_str(text);
         self.check_text_size(name, cx)
     }

@@ -87,7 +87,7 @@ pub(super) fn parse_document<'t>(
         }
         _ => String::new(),
     };
-    cx.add(at, &declarations);
+    cx.record_inserted_text(at, &declarations);
     let error = match &declarations {
         none if none.is_empty() => error,
         some => match parse_xml_without_dtd(declared.get_or_init(|| insert_text(text, at, some))) {
@@ -162,7 +162,7 @@ fn check_size_and_nesting(text: &str, format: FileFormat) -> Result<MarkupScan<'
     let mut open = Vec::new();
     let (mut at, mut root) = (0, None);
     let (mut prefixes, mut known) = (Vec::new(), BTreeSet::new());
-    let mut note = |prefix| {
+    let mut record_prefix = |prefix| {
         if known.insert(prefix) {
             prefixes.push(prefix);
         }
@@ -189,7 +189,7 @@ fn check_size_and_nesting(text: &str, format: FileFormat) -> Result<MarkupScan<'
                 markup_length(rest, 2, ">")
             } else {
                 root.get_or_insert(start);
-                let length = scan_start_tag(rest, start, &mut open, &mut note)?;
+                let length = scan_start_tag(rest, start, &mut open, &mut record_prefix)?;
                 if open.len() > deepest {
                     return Err((start, format!("more than {deepest} nested elements")));
                 }
@@ -262,16 +262,16 @@ fn reject_template(document: &Document<'_>, format: FileFormat, cx: &mut Cx<'_>)
 /// Returns an expression that xacro would have replaced by a value, with its byte offset.
 fn unexpanded_xacro_expression<'t>(node: Node<'_, 't>, format: FileFormat) -> Option<(usize, &'t str)> {
     let has_known_tag = READ.contains(&node.tag_name().name());
-    let is_expression = |value: &str| value.contains("${") || value.contains("$(");
+    let contains_xacro_expression = |value: &str| value.contains("${") || value.contains("$(");
     let attributes = node.attributes().filter(|_| has_known_tag || format == FileFormat::Sdf);
-    let mut said = attributes.filter(|attribute| is_expression(attribute.value()));
+    let mut said = attributes.filter(|attribute| contains_xacro_expression(attribute.value()));
     if let Some(found) = said.next() {
         return Some((found.range_value().start, document_text_in_range(node, found.range_value())?));
     }
     // Values in SDF are the text of elements. Plug-ins and elements with children may contain any text.
     let text = node.first_child().filter(|child| format == FileFormat::Sdf && child.is_text())?;
     let in_plugin = node.ancestors().any(|above| above.tag_name().name() == "plugin");
-    let found = text.text().filter(|text| is_expression(text) && !in_plugin)?;
+    let found = text.text().filter(|text| contains_xacro_expression(text) && !in_plugin)?;
     let before = found.len() - found.trim_start().len();
     Some((text.range().start + before, document_text_in_range(node, text.range())?.trim()))
 }
@@ -344,6 +344,6 @@ fn position_of_parser_error(error: &Error, unclosed: Option<usize>, cx: &Cx<'_>)
     match (error, unclosed) {
         (Error::UnclosedRootNode | Error::UnexpectedEndOfStream, Some(offset)) => cx.source_position(offset),
         (Error::UnclosedRootNode | Error::UnexpectedEndOfStream, None) => cx.end_of_file(),
-        _ => cx.place_in_parsed_text(error.pos().row, error.pos().col),
+        _ => cx.source_position_from_parsed_text(error.pos().row, error.pos().col),
     }
 }

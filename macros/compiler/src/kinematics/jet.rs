@@ -4,7 +4,7 @@
 
 use super::joint::Joint;
 use super::links::express_in_link_axes;
-use super::spatial::Spatial;
+use super::spatial::SpatialVector;
 use crate::expr::{Expr, Vec3};
 use crate::mechanism::{LinkId, Model, Quantity};
 
@@ -59,9 +59,9 @@ pub struct RelativeLinkMotion<'g> {
     /// Ancestor that the motion is relative to; `None` for the ground.
     pub ancestor: Option<LinkId>,
     /// Relative velocity of the link's origin, and relative angular velocity.
-    pub twist: Spatial<'g>,
+    pub twist: SpatialVector<'g>,
     /// Acceleration of the origin, angular acceleration, at zero accelerations of the coordinates.
-    pub acceleration: Spatial<'g>,
+    pub acceleration: SpatialVector<'g>,
 }
 
 /// Returns the motion of a link relative to the nearest common ancestor of this link and another.
@@ -86,8 +86,8 @@ pub fn relative_motion<'g>(
     let g = model.graph;
     let v: Vec<Expr<'g>> = (0..model.nv()).map(|k| Quantity::Velocity(k).expr(g)).collect();
     let still = vec![g.zero(); model.nv()];
-    let zero = Spatial::zero(model);
-    let mut motion: Option<(Spatial<'g>, Spatial<'g>)> = None;
+    let zero = SpatialVector::zero(model);
+    let mut motion: Option<(SpatialVector<'g>, SpatialVector<'g>)> = None;
     for l in path.iter().rev() {
         let joint = &joints[l.0];
         let own = joint.twist_with_prescribed_motion(model, &v);
@@ -111,7 +111,7 @@ pub fn motion_of_point<'g>(
     while at != on.ancestor {
         let Some(l) = at else { break };
         let joint = &joints[l.0];
-        value = joint.translation + joint.rotation.to_parent(value);
+        value = joint.translation + joint.rotation.vector_in_parent_axes(value);
         at = joint.parent;
     }
     let (w, a) = (on.twist.angular, &on.acceleration);

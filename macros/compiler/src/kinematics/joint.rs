@@ -3,11 +3,11 @@
 //! expressions of coordinates and time depends on these, and its motion may be prescribed in time.
 
 use super::rates::{CachedDerivatives, coordinate_as_expression};
-use super::spatial::{Spatial, map_spatial};
+use super::spatial::{SpatialVector, map_spatial};
 use crate::expr::replace::substitute_symbols;
 use crate::expr::replace::symbols_in;
 use crate::expr::{Expr, Graph, Rotation, Symbol, Vec3};
-use crate::mechanism::{Coordinate, InQ, Inertia, Link, LinkId, Model, Motion, Quantity, Space};
+use crate::mechanism::{ConfigurationSpace, Coordinate, InQ, Inertia, Link, LinkId, Model, Motion, Quantity};
 
 /// One degree of freedom of a joint: a column of its motion subspace, in link axes, which is constant except
 /// for links placed by expressions.
@@ -18,7 +18,7 @@ pub struct Dof<'g> {
     /// Joint velocity per unit of the entry of `v` that drives it.
     pub ratio: f64,
     /// Twist of the link per unit of joint velocity, in link axes.
-    pub subspace: Spatial<'g>,
+    pub subspace: SpatialVector<'g>,
 }
 
 /// Joint of a link at a configuration: pose of the link relative to its parent, and motion subspace.
@@ -44,29 +44,33 @@ pub struct Joint<'g> {
 #[derive(Clone, Debug)]
 pub struct JointDrift<'g> {
     /// Twist at zero velocities, different from zero if the link is driven in time.
-    pub twist: Spatial<'g>,
+    pub twist: SpatialVector<'g>,
     /// Time derivative of the components of the joint's twist at constant `v`.
-    pub acceleration: Spatial<'g>,
+    pub acceleration: SpatialVector<'g>,
     /// Time derivative of the components of each degree of freedom's subspace.
-    pub subspace_rates: Vec<Spatial<'g>>,
+    pub subspace_rates: Vec<SpatialVector<'g>>,
 }
 
 impl<'g> Joint<'g> {
     /// Transforms a wrench on the link to the parent's origin and axes.
-    pub fn wrench_to_parent(&self, w: &Spatial<'g>) -> Spatial<'g> {
-        let force = self.rotation.to_parent(w.linear);
-        let moment = self.rotation.to_parent(w.angular) + self.translation.cross(force);
-        Spatial { linear: force, angular: moment }
+    pub fn wrench_to_parent(&self, w: &SpatialVector<'g>) -> SpatialVector<'g> {
+        let force = self.rotation.vector_in_parent_axes(w.linear);
+        let moment = self.rotation.vector_in_parent_axes(w.angular) + self.translation.cross(force);
+        SpatialVector { linear: force, angular: moment }
     }
 
     /// Adds the wrench on the link to that on the parent, summed over identical limbs in lanes.
-    pub fn add_wrench(&self, parent: &Spatial<'g>, link: &Spatial<'g>) -> Spatial<'g> {
+    pub fn add_wrench_to_parent(
+        &self,
+        parent: &SpatialVector<'g>,
+        link: &SpatialVector<'g>,
+    ) -> SpatialVector<'g> {
         let wrench = self.wrench_to_parent(link);
-        parent.plus(&map_spatial(&wrench, |c| self.lane_sum(c)))
+        parent.plus(&map_spatial(&wrench, |c| self.sum_over_limb_lanes(c)))
     }
 
     /// Returns the sum of an expression over identical limbs in SIMD lanes.
-    pub fn lane_sum(&self, e: Expr<'g>) -> Expr<'g> {
+    pub fn sum_over_limb_lanes(&self, e: Expr<'g>) -> Expr<'g> {
         if self.limbs == 1 { e } else { e.lane_sum(self.limbs) }
     }
 
@@ -82,24 +86,26 @@ impl<'g> Joint<'g> {
             self.translation,
         );
         parent.plus(&Inertia {
-            mass: self.lane_sum(alone.mass),
-            moment: alone.moment.map(|c| self.lane_sum(c)),
-            tensor: alone.tensor.map(|c| self.lane_sum(c)),
+            mass: self.sum_over_limb_lanes(alone.mass),
+            moment: alone.moment.map(|c| self.sum_over_limb_lanes(c)),
+            tensor: alone.tensor.map(|c| self.sum_over_limb_lanes(c)),
         })
     }
 
     /// Returns the parent's twist at the link's origin in link axes.
-    pub fn twist_to_child(&self, parent: &Spatial<'g>) -> Spatial<'g> {
-        Spatial {
-            linear: self.rotation.to_child(parent.linear + parent.angular.cross(self.translation)),
-            angular: self.rotation.to_child(parent.angular),
+    pub fn twist_to_child(&self, parent: &SpatialVector<'g>) -> SpatialVector<'g> {
+        SpatialVector {
+            linear: self
+                .rotation
+                .vector_in_child_axes(parent.linear + parent.angular.cross(self.translation)),
+            angular: self.rotation.vector_in_child_axes(parent.angular),
         }
     }
 
     /// Returns the joint's relative twist for the velocities `rates` (by entry of `v`), without motion
     /// prescribed in time.
-    pub fn relative_twist(&self, model: &Model<'g>, rates: &[Expr<'g>]) -> Spatial<'g> {
-        let mut sum = Spatial::zero(model);
+    pub fn relative_twist(&self, model: &Model<'g>, rates: &[Expr<'g>]) -> SpatialVector<'g> {
+        let mut sum = SpatialVector::zero(model);
         for dof in &self.dofs {
             sum = sum.plus(&dof.subspace.times_scalar(rates[dof.index] * model.graph.num(dof.ratio)));
         }
@@ -109,7 +115,7 @@ impl<'g> Joint<'g> {
 
 impl<'g> Joint<'g> {
     /// Returns the joint's relative twist for the velocities `v`, including motion prescribed in time.
-    pub fn twist_with_prescribed_motion(&self, model: &Model<'g>, v: &[Expr<'g>]) -> Spatial<'g> {
+    pub fn twist_with_prescribed_motion(&self, model: &Model<'g>, v: &[Expr<'g>]) -> SpatialVector<'g> {
         let relative = self.relative_twist(model, v);
         self.drift.as_ref().map_or(relative, |drift| relative.plus(&drift.twist))
     }
@@ -118,24 +124,27 @@ impl<'g> Joint<'g> {
     pub fn link_acceleration(
         &self,
         model: &Model<'g>,
-        parent: Option<(&Spatial<'g>, &Spatial<'g>)>,
+        parent: Option<(&SpatialVector<'g>, &SpatialVector<'g>)>,
         v: &[Expr<'g>],
         a: &[Expr<'g>],
-    ) -> Spatial<'g> {
+    ) -> SpatialVector<'g> {
         let (rate, mut own) = (self.twist_with_prescribed_motion(model, v), self.relative_twist(model, a));
         if let Some(drift) = &self.drift {
             own = own.plus(&drift.acceleration);
         }
         let turning = rate.angular.cross(rate.linear);
         let Some((twist, parent)) = parent else {
-            return Spatial { linear: own.linear + turning, angular: own.angular };
+            return SpatialVector { linear: own.linear + turning, angular: own.angular };
         };
-        let w = self.rotation.to_child(twist.angular);
+        let w = self.rotation.vector_in_child_axes(twist.angular);
         let p = self.translation;
         let carried = parent.linear + parent.angular.cross(p) + twist.angular.cross(twist.angular.cross(p));
-        Spatial {
-            linear: self.rotation.to_child(carried) + (w + w).cross(rate.linear) + turning + own.linear,
-            angular: self.rotation.to_child(parent.angular) + w.cross(rate.angular) + own.angular,
+        SpatialVector {
+            linear: self.rotation.vector_in_child_axes(carried)
+                + (w + w).cross(rate.linear)
+                + turning
+                + own.linear,
+            angular: self.rotation.vector_in_child_axes(parent.angular) + w.cross(rate.angular) + own.angular,
         }
     }
 }
@@ -148,7 +157,7 @@ pub fn joints_of_model<'g>(model: &Model<'g>) -> Vec<Joint<'g>> {
 
 /// Returns the joint of a link; `partials` caches derivatives of the preceding links.
 pub fn joint_of_link<'g>(
-    space: Space<'_, 'g>,
+    space: ConfigurationSpace<'_, 'g>,
     link: &Link<'g>,
     partials: &mut CachedDerivatives<'g>,
 ) -> Joint<'g> {
@@ -156,7 +165,7 @@ pub fn joint_of_link<'g>(
     let zero = Vec3::zero(g);
     let quaternion_components = |first: InQ| [0, 1, 2, 3].map(|k| (first + k).expr(g));
     let single_dof_list = |c: &Coordinate, linear, angular| {
-        vec![Dof { index: c.v.0, ratio: c.ratio, subspace: Spatial { linear, angular } }]
+        vec![Dof { index: c.v.0, ratio: c.ratio, subspace: SpatialVector { linear, angular } }]
     };
     let (motion, shift, dofs) = match &link.motion {
         Motion::Turn { axis, coordinate } => (
@@ -207,7 +216,7 @@ pub fn joint_of_link<'g>(
 /// time derivative of the placement, and its subspace consists of the derivatives of the twist with respect
 /// to the velocities.
 fn joint_from_placement<'g>(
-    space: Space<'_, 'g>,
+    space: ConfigurationSpace<'_, 'g>,
     link: &Link<'g>,
     partials: &mut CachedDerivatives<'g>,
 ) -> Joint<'g> {
@@ -237,22 +246,25 @@ fn joint_from_placement<'g>(
 /// Returns the twist of a frame from the time derivatives of its placement, in the frame's axes: `Rᵀ ṗ`, and
 /// `[ω]× = Rᵀ Ṙ`.
 fn twist_of_placement<'g>(
-    space: Space<'_, 'g>,
+    space: ConfigurationSpace<'_, 'g>,
     rotation: &Rotation<'g>,
     translation: Vec3<'g>,
     partials: &mut CachedDerivatives<'g>,
-) -> Spatial<'g> {
+) -> SpatialVector<'g> {
     let angular = rotation.angular_velocity(&mut |e| partials.time_derivative(space, e));
-    Spatial { linear: rotation.to_child(translation.map(|c| partials.time_derivative(space, c))), angular }
+    SpatialVector {
+        linear: rotation.vector_in_child_axes(translation.map(|c| partials.time_derivative(space, c))),
+        angular,
+    }
 }
 
-fn velocity_indices_in_twist(twist: &Spatial<'_>) -> Vec<usize> {
+fn velocity_indices_in_twist(twist: &SpatialVector<'_>) -> Vec<usize> {
     let all: Vec<Expr<'_>> = twist.linear.0.iter().chain(&twist.angular.0).copied().collect();
-    let velocity_index = |s: Symbol| match Quantity::from_symbol(s) {
+    let velocity_index_of_symbol = |s: Symbol| match Quantity::from_symbol(s) {
         Quantity::Velocity(k) => Some(k),
         _ => None,
     };
-    symbols_in(&all).into_iter().filter_map(velocity_index).collect()
+    symbols_in(&all).into_iter().filter_map(velocity_index_of_symbol).collect()
 }
 
 /// Returns an expression with all velocity symbols set to zero.
@@ -272,6 +284,6 @@ fn axis_aligned_dof<'g>(
     Dof {
         index,
         ratio: 1.0,
-        subspace: Spatial { linear: axis_or_zero(linear), angular: axis_or_zero(angular) },
+        subspace: SpatialVector { linear: axis_or_zero(linear), angular: axis_or_zero(angular) },
     }
 }

@@ -1,14 +1,14 @@
 //! Velocities and accelerations of all links, and transformation of vectors between the axes of links.
 
 use super::joint::Joint;
-use super::spatial::Spatial;
+use super::spatial::SpatialVector;
 use crate::expr::{Expr, Vec3};
 use crate::mechanism::{LinkId, Model};
 
 /// Returns the twists of all links (velocity of the origin, angular velocity; link axes) for the velocities
 /// `v`.
-pub fn twists<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]) -> Vec<Spatial<'g>> {
-    let mut twists: Vec<Spatial<'g>> = Vec::with_capacity(joints.len());
+pub fn twists<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]) -> Vec<SpatialVector<'g>> {
+    let mut twists: Vec<SpatialVector<'g>> = Vec::with_capacity(joints.len());
     for joint in joints {
         let own = joint.twist_with_prescribed_motion(model, v);
         twists.push(match joint.parent {
@@ -24,11 +24,11 @@ pub fn twists<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]) -> Ve
 pub fn accelerations<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
-    twists: &[Spatial<'g>],
+    twists: &[SpatialVector<'g>],
     v: &[Expr<'g>],
     a: &[Expr<'g>],
-) -> Vec<Spatial<'g>> {
-    let mut all: Vec<Spatial<'g>> = Vec::with_capacity(joints.len());
+) -> Vec<SpatialVector<'g>> {
+    let mut all: Vec<SpatialVector<'g>> = Vec::with_capacity(joints.len());
     for joint in joints {
         let parent = joint.parent.map(|p| (twists[p.0], all[p.0]));
         all.push(joint.link_acceleration(model, parent.as_ref().map(|(t, a)| (t, a)), v, a));
@@ -49,7 +49,7 @@ pub fn express_in_link_axes<'g>(
     while from != at {
         match (from, at) {
             (Some(f), a) if a.is_none_or(|a| f > a) => {
-                v = joints[f.0].rotation.to_parent(v);
+                v = joints[f.0].rotation.vector_in_parent_axes(v);
                 from = joints[f.0].parent;
             }
             (_, Some(a)) => {
@@ -59,5 +59,5 @@ pub fn express_in_link_axes<'g>(
             _ => break,
         }
     }
-    down.iter().rev().fold(v, |v, link| joints[link.0].rotation.to_child(v))
+    down.iter().rev().fold(v, |v, link| joints[link.0].rotation.vector_in_child_axes(v))
 }

@@ -3,11 +3,11 @@
 //! is found, Grübler's count is used, which assumes that all rows are independent.
 
 use super::redundancy::OrthonormalRowBasis;
-use super::rows::{Rows, random_configuration};
+use super::rows::{CompiledConstraintRows, random_configuration};
 use crate::diag::Diagnostics;
 use crate::expr::Expr;
 use crate::expr::replace::symbols_in;
-use crate::mechanism::{Chart, ConstraintPivot, Freedom, InV, Model, Quantity};
+use crate::mechanism::{Chart, ConstraintPivot, DegreeOfFreedomCounts, InV, Model, Quantity};
 
 /// Random starts of the search; a third of them if parameters are sampled, whose values may be incompatible.
 const STARTS: u64 = 24;
@@ -26,12 +26,16 @@ const OPEN: f64 = 1e-4;
 const SMALL_PIVOT: f64 = 1e-6;
 
 /// A configuration, with the seed of the parameters for which it satisfies the constraints.
-pub type Sample = (Vec<f64>, u64);
+pub type ConfigurationSample = (Vec<f64>, u64);
 
 /// Returns some configurations that satisfy the constraints, the first near the configuration with all
 /// coordinates zero if possible. Reports loops that cannot be closed if all their values are constant.
-pub fn sample_configurations(model: &Model<'_>, rows: &Rows<'_>, cx: &mut Diagnostics) -> Vec<Sample> {
-    let mut found: Vec<Sample> = Vec::new();
+pub fn sample_feasible_configurations(
+    model: &Model<'_>,
+    rows: &CompiledConstraintRows<'_>,
+    cx: &mut Diagnostics,
+) -> Vec<ConfigurationSample> {
+    let mut found: Vec<ConfigurationSample> = Vec::new();
     let mut worst: Option<(usize, f64)> = None;
     let wanted = if has_constant_residuals(model) { STARTS } else { STARTS / 3 };
     let possible = WORK / rows.evaluation_cost().max(1);
@@ -70,21 +74,24 @@ fn has_constant_residuals(model: &Model<'_>) -> bool {
 /// without a degree of freedom.
 pub fn degrees_of_freedom(
     model: &Model<'_>,
-    rows: &Rows<'_>,
-    samples: &[Sample],
+    rows: &CompiledConstraintRows<'_>,
+    samples: &[ConfigurationSample],
     cx: &mut Diagnostics,
-) -> Freedom {
+) -> DegreeOfFreedomCounts {
     let (nv, nc) = (model.nv(), model.constraints.len());
-    let free_dof_count = |(q, seed): &Sample, count: usize| {
+    let dof_count_at_sample = |(q, seed): &ConfigurationSample, count: usize| {
         let mut basis = OrthonormalRowBasis::default();
-        rows.jacobian(q, *seed)[..count].iter().for_each(|row| basis.add(row, 1e-7));
+        rows.jacobian(q, *seed)[..count].iter().for_each(|row| basis.add_independent_row(row, 1e-7));
         nv - basis.rank()
     };
     // The first sample that can move; others may be locked.
-    let sample = samples.iter().find(|w| free_dof_count(w, nc) > 0).or(samples.first());
-    let count_free_dofs = |rank: usize| sample.map_or(nv.saturating_sub(rank), |w| free_dof_count(w, rank));
-    let freedom =
-        Freedom { coordinates: count_free_dofs(model.holonomic_count()), velocities: count_free_dofs(nc) };
+    let sample = samples.iter().find(|w| dof_count_at_sample(w, nc) > 0).or(samples.first());
+    let dof_count_with_first_rows =
+        |rank: usize| sample.map_or(nv.saturating_sub(rank), |w| dof_count_at_sample(w, rank));
+    let freedom = DegreeOfFreedomCounts {
+        coordinates: dof_count_with_first_rows(model.holonomic_count()),
+        velocities: dof_count_with_first_rows(nc),
+    };
     let is_mechanism_undriven = || samples.iter().all(|sample| !moves_at_zero_velocity(model, rows, sample));
     if freedom.velocities == 0 && !samples.is_empty() && is_mechanism_undriven() {
         let place = model.constraints.last().map_or(&model.place, |c| &c.place);
@@ -97,7 +104,11 @@ pub fn degrees_of_freedom(
 
 /// Returns true if the mechanism moves at zero velocities: frames depend on time, or the rate of a constraint
 /// has a velocity-free term.
-fn moves_at_zero_velocity(model: &Model<'_>, rows: &Rows<'_>, (q, seed): &Sample) -> bool {
+fn moves_at_zero_velocity(
+    model: &Model<'_>,
+    rows: &CompiledConstraintRows<'_>,
+    (q, seed): &ConfigurationSample,
+) -> bool {
     let placements: Vec<Expr<'_>> =
         model.links.iter().flat_map(|link| link.placement.all_expressions()).collect();
     rows.is_violated_at_zero_velocity(q, *seed)
@@ -106,10 +117,10 @@ fn moves_at_zero_velocity(model: &Model<'_>, rows: &Rows<'_>, (q, seed): &Sample
 
 /// Returns a pivot for each constraint among the velocities that need not be independent, in the order of an
 /// elimination that is well-conditioned at a sample. Returns `None` if some constraint has no pivot.
-pub fn constraint_pivot_velocities(
+pub fn pivot_velocity_per_constraint(
     model: &Model<'_>,
-    rows: &Rows<'_>,
-    samples: &[Sample],
+    rows: &CompiledConstraintRows<'_>,
+    samples: &[ConfigurationSample],
     independent: &[usize],
 ) -> Option<Vec<ConstraintPivot>> {
     let (q, seed) = samples.first()?;
@@ -139,7 +150,12 @@ pub fn constraint_pivot_velocities(
 
 /// Closes the loops by the Levenberg–Marquardt method from a random configuration. On failure, returns the
 /// row with the largest residual, and the residual.
-fn close_loops(model: &Model<'_>, rows: &Rows<'_>, seed: u64, steps: u64) -> Result<Vec<f64>, (usize, f64)> {
+fn close_loops(
+    model: &Model<'_>,
+    rows: &CompiledConstraintRows<'_>,
+    seed: u64,
+    steps: u64,
+) -> Result<Vec<f64>, (usize, f64)> {
     let spread = [0.2, 1.0, 3.0][(seed % 3) as usize];
     let mut q = random_configuration(model, seed);
     for chart in &model.charts {

@@ -18,8 +18,9 @@ pub use joint::{Dof, Joint, JointDrift, joint_of_link, joints_of_model};
 pub use links::{accelerations, express_in_link_axes, twists};
 pub use rates::{
     CachedDerivatives, cached_velocity_gradient, configuration_rate, coordinate_as_expression,
-    coordinate_in_terms_of_q, coordinate_velocity, energy_gradient, rotation_entries_with_rates,
-    time_derivative, time_derivatives_along_motion, velocity_gradient, velocity_gradients,
+    coordinate_in_terms_of_q, coordinate_velocity, generalized_force_opposing_energy,
+    rotation_entries_with_rates, time_derivative, time_derivatives_along_motion, velocity_gradient,
+    velocity_gradients,
 };
-pub use rows::{Rows, random_configuration, symbol_value_at_rest};
-pub use spatial::{Spatial, map_spatial};
+pub use rows::{CompiledConstraintRows, random_configuration, symbol_value_at_rest};
+pub use spatial::{SpatialVector, map_spatial};

@@ -3,7 +3,7 @@
 use crate::expr::diff::DirectionalDerivative;
 use crate::expr::replace::symbols_in;
 use crate::expr::{Expr, Graph, Rotation, Symbol, Vec3};
-use crate::mechanism::{Chart, Coordinate, Gradient, InQ, InV, Model, Quantity, Space};
+use crate::mechanism::{Chart, ConfigurationSpace, Coordinate, InQ, InV, Model, Quantity, VelocityGradient};
 use std::collections::BTreeMap;
 
 /// Returns the value of a coordinate as an expression of `q`, in the graph of the model.
@@ -22,7 +22,7 @@ pub fn coordinate_velocity<'g>(model: &Model<'g>, c: &Coordinate) -> Expr<'g> {
 }
 
 /// Returns the time derivative of an expression of `q`, `v` and `t` along the motion, at constant `v`.
-pub fn time_derivative<'g>(space: Space<'_, 'g>, e: Expr<'g>) -> Expr<'g> {
+pub fn time_derivative<'g>(space: ConfigurationSpace<'_, 'g>, e: Expr<'g>) -> Expr<'g> {
     time_derivative_from_partials(space, e, |symbol| {
         DirectionalDerivative::with_respect_to(symbol, space.graph).differentiate(e)
     })
@@ -32,18 +32,19 @@ pub fn time_derivative<'g>(space: Space<'_, 'g>, e: Expr<'g>) -> Expr<'g> {
 /// constant velocities. All symbols vary at once, so common subexpressions are differentiated once instead of
 /// once per symbol.
 pub fn time_derivatives_along_motion<'g>(
-    space: Space<'_, 'g>,
+    space: ConfigurationSpace<'_, 'g>,
     e: &[Expr<'g>],
     accelerated: bool,
 ) -> Vec<Expr<'g>> {
     let g = space.graph;
-    let rate = |symbol: Symbol| match Quantity::from_symbol(symbol) {
+    let rate_of_symbol = |symbol: Symbol| match Quantity::from_symbol(symbol) {
         Quantity::Configuration(k) => Some(configuration_rate(space, k)),
         Quantity::Velocity(k) if accelerated => Some(Quantity::Acceleration(k).expr(g)),
         Quantity::Time => Some(g.one()),
         _ => None,
     };
-    let seeds = symbols_in(e).into_iter().filter_map(|symbol| rate(symbol).map(|rate| (symbol, rate)));
+    let seeds =
+        symbols_in(e).into_iter().filter_map(|symbol| rate_of_symbol(symbol).map(|rate| (symbol, rate)));
     let mut along = DirectionalDerivative::differentiation_with_rates(seeds.collect(), g)
         .with_preset_derivatives(rotation_entries_with_rates(space));
     e.iter().map(|e| along.differentiate(*e)).collect()
@@ -52,7 +53,7 @@ pub fn time_derivatives_along_motion<'g>(
 /// Returns the entries of the rotation matrices of ball and free joints, each with its time derivative by
 /// `Ṙ = R [ω]×`. The derivative consists of other entries times angular velocities, whereas the derivatives
 /// of the quaternion's components would have to be multiplied out.
-pub fn rotation_entries_with_rates<'g>(space: Space<'_, 'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
+pub fn rotation_entries_with_rates<'g>(space: ConfigurationSpace<'_, 'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
     let g = space.graph;
     let mut all = Vec::new();
     for chart in space.charts {
@@ -64,7 +65,7 @@ pub fn rotation_entries_with_rates<'g>(space: Space<'_, 'g>) -> Vec<(Expr<'g>, E
         let quaternion = [0, 1, 2, 3].map(|k| (first + k).expr(g));
         let axes = [0, 1, 2].map(|k| {
             let unit = [0, 1, 2].map(|i| if i == k { g.one() } else { g.zero() });
-            Rotation::from_quaternion(quaternion).to_parent(Vec3(unit))
+            Rotation::from_quaternion(quaternion).vector_in_parent_axes(Vec3(unit))
         });
         let w = [0, 1, 2].map(|k| joint_velocity(space, v + k));
         for k in 0..3 {
@@ -77,7 +78,7 @@ pub fn rotation_entries_with_rates<'g>(space: Space<'_, 'g>) -> Vec<(Expr<'g>, E
 }
 
 /// Returns a joint velocity, expressed in generalized speeds if these are declared.
-fn joint_velocity<'g>(space: Space<'_, 'g>, index: InV) -> Expr<'g> {
+fn joint_velocity<'g>(space: ConfigurationSpace<'_, 'g>, index: InV) -> Expr<'g> {
     match space.speeds {
         None => index.expr(space.graph),
         Some(speeds) => speeds.joint_velocity(space.graph, index),
@@ -98,13 +99,13 @@ impl<'g> CachedDerivatives<'g> {
     }
 
     /// Returns the time derivative of an expression along the motion, at constant `v`.
-    pub fn time_derivative(&mut self, space: Space<'_, 'g>, e: Expr<'g>) -> Expr<'g> {
+    pub fn time_derivative(&mut self, space: ConfigurationSpace<'_, 'g>, e: Expr<'g>) -> Expr<'g> {
         time_derivative_from_partials(space, e, |symbol| self.derivative(symbol, e))
     }
 }
 
 fn time_derivative_from_partials<'g>(
-    space: Space<'_, 'g>,
+    space: ConfigurationSpace<'_, 'g>,
     e: Expr<'g>,
     mut partial: impl FnMut(Symbol) -> Expr<'g>,
 ) -> Expr<'g> {
@@ -124,7 +125,7 @@ fn time_derivative_from_partials<'g>(
 /// coordinates, half of the product of quaternion and angular velocity for a quaternion x y z w, `R v` for
 /// the position of a free joint. With declared generalized speeds, the joint velocities are `Z(q)` times the
 /// entries of `v`.
-pub fn configuration_rate<'g>(space: Space<'_, 'g>, k: usize) -> Expr<'g> {
+pub fn configuration_rate<'g>(space: ConfigurationSpace<'_, 'g>, k: usize) -> Expr<'g> {
     let g = space.graph;
     let velocity_component = |index: InV| joint_velocity(space, index);
     let quaternion_components = |first: InQ| [0, 1, 2, 3].map(|k| (first + k).expr(g));
@@ -143,7 +144,7 @@ pub fn configuration_rate<'g>(space: Space<'_, 'g>, k: usize) -> Expr<'g> {
                 let quaternion = quaternion_components(a + 3);
                 return match k - a.0 {
                     position @ 0..3 => Rotation::from_quaternion(quaternion)
-                        .to_parent(Vec3(three_velocity_components(b)))[position],
+                        .vector_in_parent_axes(Vec3(three_velocity_components(b)))[position],
                     component => {
                         quaternion_rate_entry(quaternion, three_velocity_components(b + 3), component - 3)
                     }
@@ -194,13 +195,13 @@ pub fn velocity_gradients<'g>(all: &[Expr<'g>]) -> Vec<Vec<(usize, Expr<'g>)>> {
 
 /// Returns the generalized forces that oppose an energy: the derivatives of its time derivative with respect
 /// to the velocities, at constant time.
-pub fn energy_gradient<'g>(model: &Model<'g>, energy: Expr<'g>) -> Gradient<'g> {
+pub fn generalized_force_opposing_energy<'g>(model: &Model<'g>, energy: Expr<'g>) -> VelocityGradient<'g> {
     let velocity_gradient_of_energy_rate =
         || velocity_gradient(time_derivative(model.configuration_space(), energy));
     model.gradients.cached_energy_gradient(&model.charts, energy, velocity_gradient_of_energy_rate)
 }
 
 /// Returns the derivatives of an expression with respect to all velocities from the model's cache.
-pub fn cached_velocity_gradient<'g>(model: &Model<'g>, e: Expr<'g>) -> Gradient<'g> {
+pub fn cached_velocity_gradient<'g>(model: &Model<'g>, e: Expr<'g>) -> VelocityGradient<'g> {
     model.gradients.cached_velocity_derivatives(e, || velocity_gradient(e))
 }

@@ -2,8 +2,8 @@
 //! share a condition. They are found in random configurations and in some that satisfy the constraints, for
 //! random parameters, so that only rows that are redundant in every configuration are recognised.
 
-use super::mobility::Sample;
-use super::rows::{Rows, random_configuration, symbol_value_at_rest};
+use super::mobility::ConfigurationSample;
+use super::rows::{CompiledConstraintRows, random_configuration, symbol_value_at_rest};
 use crate::diag::Diagnostics;
 use crate::expr::eval::Tape;
 use crate::mechanism::{Constraint, Model};
@@ -20,7 +20,7 @@ const ROUNDING: f64 = 1e-15;
 
 /// Returns for each row whether no velocity influences it in any configuration, up to rounding. An example is
 /// the height of a wheel whose axle has a constant height.
-pub fn velocity_independent_row_flags(model: &Model<'_>, rows: &Rows<'_>) -> Vec<bool> {
+pub fn velocity_independent_row_flags(model: &Model<'_>, rows: &CompiledConstraintRows<'_>) -> Vec<bool> {
     let sample_jacobian = |seed| rows.jacobian(&random_configuration(model, seed), seed);
     let samples: Vec<Vec<Vec<f64>>> = (0..SAMPLES).map(sample_jacobian).collect();
     let group_of_row = |row: usize| model.constraints[row].group;
@@ -34,10 +34,10 @@ pub fn velocity_independent_row_flags(model: &Model<'_>, rows: &Rows<'_>) -> Vec
     };
     let sizes: Vec<Vec<f64>> =
         samples.iter().map(|j| j.iter().map(|row| dot(row, row).sqrt()).collect()).collect();
-    let sample_zero_rows = |seed| rows.may_be_zero(&random_configuration(model, seed), seed);
+    let sample_zero_rows = |seed| rows.numerically_zero_row_flags(&random_configuration(model, seed), seed);
     let zeros: Vec<Vec<bool>> = (0..SAMPLES).map(sample_zero_rows).collect();
     let is_constant_row = |row| {
-        rows.is_constant(row)
+        rows.is_velocity_independent(row)
             || zeros.iter().all(|zeros| zeros[row])
             || sizes.iter().all(|sizes| is_negligible_row(sizes, row))
     };
@@ -79,9 +79,9 @@ pub fn report_violated_constant_rows(model: &Model<'_>, constant: &[bool], cx: &
 /// compatible. In this case rows are removed only if a configuration is known that satisfies all of them.
 pub fn prune_redundant_rows(
     model: &mut Model<'_>,
-    rows: &Rows<'_>,
+    rows: &CompiledConstraintRows<'_>,
     constant: &[bool],
-    samples: &[Sample],
+    samples: &[ConfigurationSample],
 ) -> bool {
     let random = (0..SAMPLES).map(|seed| (random_configuration(model, seed), seed));
     let all = random.chain(samples.iter().cloned());
@@ -92,7 +92,10 @@ pub fn prune_redundant_rows(
     for row in (0..model.constraints.len()).filter(|row| !constant[*row]) {
         if !jacobians.iter().zip(&bases).all(|(j, basis)| basis.spans_row(&j[row], TOLERANCE)) {
             kept.push(row);
-            bases.iter_mut().zip(&jacobians).for_each(|(basis, j)| basis.add(&j[row], TOLERANCE));
+            bases
+                .iter_mut()
+                .zip(&jacobians)
+                .for_each(|(basis, j)| basis.add_independent_row(&j[row], TOLERANCE));
         }
     }
     if samples.is_empty() && bases.iter().all(|basis| basis.rank() == model.nv()) {
@@ -119,7 +122,7 @@ impl OrthonormalRowBasis {
     }
 
     /// Adds a row, unless it is a combination of the previous rows up to a relative tolerance.
-    pub fn add(&mut self, row: &[f64], tolerance: f64) {
+    pub fn add_independent_row(&mut self, row: &[f64], tolerance: f64) {
         let rest = self.orthogonal_component(row);
         let size = dot(&rest, &rest).sqrt();
         if size > tolerance * dot(row, row).sqrt().max(tolerance) {

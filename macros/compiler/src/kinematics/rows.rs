@@ -7,7 +7,7 @@ use crate::expr::{Expr, Symbol};
 use crate::mechanism::{Model, Quantity};
 
 /// Constraints compiled for numerical evaluation, in the order of the model.
-pub struct Rows<'g> {
+pub struct CompiledConstraintRows<'g> {
     residuals: Tape<'g>,
     /// Row and column of each nonzero entry of the Jacobian.
     at: Vec<(usize, usize)>,
@@ -17,9 +17,9 @@ pub struct Rows<'g> {
     size: (usize, usize),
 }
 
-impl<'g> Rows<'g> {
+impl<'g> CompiledConstraintRows<'g> {
     /// Compiles the residuals and Jacobians of all constraints of a model.
-    pub fn new(model: &Model<'g>) -> Rows<'g> {
+    pub fn new(model: &Model<'g>) -> CompiledConstraintRows<'g> {
         let rates: Vec<Expr<'g>> = model.constraints.iter().map(|c| c.rate).collect();
         let gradients = velocity_gradients(&rates).into_iter().enumerate();
         let (at, entries): (Vec<_>, Vec<_>) = gradients
@@ -28,7 +28,7 @@ impl<'g> Rows<'g> {
             })
             .unzip();
         let residuals: Vec<Expr<'g>> = model.constraints.iter().filter_map(|c| c.residual).collect();
-        Rows {
+        CompiledConstraintRows {
             residuals: Tape::new(&residuals),
             at,
             entries: Tape::new(&entries),
@@ -47,7 +47,7 @@ impl<'g> Rows<'g> {
     }
 
     /// Returns true for a constraint row that no velocity influences.
-    pub fn is_constant(&self, row: usize) -> bool {
+    pub fn is_velocity_independent(&self, row: usize) -> bool {
         self.at.iter().all(|(r, _)| *r != row)
     }
 
@@ -77,7 +77,7 @@ impl<'g> Rows<'g> {
 
     /// Returns for each row whether all of its coefficients at a configuration are zero up to rounding
     /// errors.
-    pub fn may_be_zero(&self, q: &[f64], seed: u64) -> Vec<bool> {
+    pub fn numerically_zero_row_flags(&self, q: &[f64], seed: u64) -> Vec<bool> {
         let mut may_be = vec![true; self.size.0];
         let entries = self.entries.evaluate_with_rounding(&|s| symbol_value_at_rest(s, q, seed));
         for ((row, _), entry) in self.at.iter().zip(entries) {

@@ -18,10 +18,10 @@ const SAMPLES: u64 = 4;
 /// A row counts as a linear combination of others if its relative remainder is below this tolerance.
 const TOLERANCE: f64 = 1e-9;
 
-type Matrix<'g> = Vec<Vec<Expr<'g>>>;
+type ExpressionMatrix<'g> = Vec<Vec<Expr<'g>>>;
 
 /// Returns the entries of a matrix in random configurations, row by row.
-fn sampled_matrix_entries(model: &Model<'_>, rows: &Matrix<'_>) -> Vec<Vec<Vec<f64>>> {
+fn sampled_matrix_entries(model: &Model<'_>, rows: &ExpressionMatrix<'_>) -> Vec<Vec<Vec<f64>>> {
     let entries: Vec<Expr<'_>> = rows.iter().flatten().copied().collect();
     let (tape, width) = (Tape::new(&entries), rows.first().map_or(0, Vec::len).max(1));
     let sampled_rows = |seed| {
@@ -32,7 +32,7 @@ fn sampled_matrix_entries(model: &Model<'_>, rows: &Matrix<'_>) -> Vec<Vec<Vec<f
 }
 
 /// Returns the columns of a matrix that are not zero in all configurations.
-pub fn nonzero_columns(model: &Model<'_>, rows: &Matrix<'_>) -> Vec<usize> {
+pub fn nonzero_columns(model: &Model<'_>, rows: &ExpressionMatrix<'_>) -> Vec<usize> {
     let all = sampled_matrix_entries(model, rows);
     let width = rows.first().map_or(0, Vec::len);
     let is_nonzero_column = |k: &usize| all.iter().flatten().any(|row| row[*k].abs() > TOLERANCE);
@@ -41,12 +41,12 @@ pub fn nonzero_columns(model: &Model<'_>, rows: &Matrix<'_>) -> Vec<usize> {
 
 /// Returns the first row that is a combination of its predecessors in every configuration; `None` if there is
 /// none.
-pub fn index_of_first_dependent_row(model: &Model<'_>, rows: &Matrix<'_>) -> Option<usize> {
+pub fn index_of_first_dependent_row(model: &Model<'_>, rows: &ExpressionMatrix<'_>) -> Option<usize> {
     let first_dependent_row = |sample: &Vec<Vec<f64>>| {
         let mut basis = OrthonormalRowBasis::default();
         sample.iter().position(|row| {
             let before = basis.rank();
-            basis.add(row, TOLERANCE);
+            basis.add_independent_row(row, TOLERANCE);
             basis.rank() == before
         })
     };
@@ -57,7 +57,10 @@ pub fn index_of_first_dependent_row(model: &Model<'_>, rows: &Matrix<'_>) -> Opt
 
 /// Returns the inverse of a square matrix, block by block: minors over determinants, simplified. Returns
 /// `None` if a block is larger than [`MOST_COUPLED`] or not square.
-pub fn inverse<'g>(model: &Model<'g>, rows: &Matrix<'g>) -> Option<Matrix<'g>> {
+pub fn inverse_of_speed_matrix<'g>(
+    model: &Model<'g>,
+    rows: &ExpressionMatrix<'g>,
+) -> Option<ExpressionMatrix<'g>> {
     let n = rows.len();
     let mut out = vec![vec![model.graph.zero(); n]; n];
     for (own_rows, own_columns) in connected_blocks(rows) {
@@ -76,7 +79,7 @@ pub fn inverse<'g>(model: &Model<'g>, rows: &Matrix<'g>) -> Option<Matrix<'g>> {
 }
 
 /// Returns the sets of rows and columns that are connected by nonzero entries.
-fn connected_blocks(rows: &Matrix<'_>) -> Vec<(Vec<usize>, Vec<usize>)> {
+fn connected_blocks(rows: &ExpressionMatrix<'_>) -> Vec<(Vec<usize>, Vec<usize>)> {
     let n = rows.len();
     let mut left: Vec<usize> = (0..n).collect();
     let mut blocks = Vec::new();
@@ -103,23 +106,26 @@ fn connected_blocks(rows: &Matrix<'_>) -> Vec<(Vec<usize>, Vec<usize>)> {
     blocks
 }
 
-fn invert_speed_block_with_minors<'g>(model: &Model<'g>, rows: &Matrix<'g>) -> Matrix<'g> {
+fn invert_speed_block_with_minors<'g>(
+    model: &Model<'g>,
+    rows: &ExpressionMatrix<'g>,
+) -> ExpressionMatrix<'g> {
     let n = rows.len();
     let mut minors = MinorCache { model, rows, known: BTreeMap::new() };
     let all = (1_u32 << n) - 1;
     let whole = minors.submatrix_determinant(all, all);
-    let mut entry = |i: usize, j: usize| {
+    let mut inverse_entry = |i: usize, j: usize| {
         let minor = minors.submatrix_determinant(all & !(1 << j), all & !(1 << i));
         let signed = if (i + j).is_multiple_of(2) { minor } else { -minor };
         shorten_expression(model, signed / whole)
     };
-    (0..n).map(|i| (0..n).map(|j| entry(i, j)).collect()).collect()
+    (0..n).map(|i| (0..n).map(|j| inverse_entry(i, j)).collect()).collect()
 }
 
 /// Cache of the minors of a matrix; sets of rows and columns are bit masks.
 struct MinorCache<'a, 'g> {
     model: &'a Model<'g>,
-    rows: &'a Matrix<'g>,
+    rows: &'a ExpressionMatrix<'g>,
     known: BTreeMap<(u32, u32), Expr<'g>>,
 }
 

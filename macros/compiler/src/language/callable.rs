@@ -45,17 +45,17 @@ impl Callable {
     /// Returns the callable function of the language with this name.
     pub fn find_by_name(name: &str) -> Option<Callable> {
         let elementary = Function::ALL.iter().find(|(known, _)| *known == name);
-        let find_other_callable = || OTHERS.iter().find(|(known, _)| *known == name);
+        let find_in_others_table = || OTHERS.iter().find(|(known, _)| *known == name);
         elementary
             .map(|(_, function)| Callable::Elementary(*function))
             .or_else(|| FunctionId::find_by_name(name).map(Callable::Function))
             .or_else(|| Solid::find_by_name(name).map(Callable::Solid))
             .or_else(|| Rotation::find_by_name(name).map(Callable::Rotation))
-            .or_else(|| find_other_callable().map(|(_, callable)| *callable))
+            .or_else(|| find_in_others_table().map(|(_, callable)| *callable))
     }
 
     /// Returns the name `rolls` or `slips` of a pair of surfaces.
-    pub fn contact_verb(self) -> &'static str {
+    pub fn rolls_or_slips_name(self) -> &'static str {
         OTHERS.iter().find(|(_, callable)| *callable == self).map_or("", |(word, _)| word)
     }
 

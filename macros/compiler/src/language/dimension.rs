@@ -3,7 +3,7 @@
 use super::ratio::Ratio;
 
 /// Index of an unknown dimension in unit inference.
-pub type Variable = usize;
+pub type UnknownDimensionIndex = usize;
 
 /// A dimension: powers of metre, kilogram and second, times powers of unknown dimensions.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -11,7 +11,7 @@ pub struct Dimension {
     /// Exponents of length, mass and time in the dimension.
     pub base: [Ratio; 3],
     /// Nonzero exponents of the unknown dimensions, in ascending order of their numbers.
-    pub unknown: Vec<(Variable, Ratio)>,
+    pub unknown: Vec<(UnknownDimensionIndex, Ratio)>,
 }
 
 impl Dimension {
@@ -22,7 +22,7 @@ impl Dimension {
     }
 
     /// Returns the dimension that consists of a single unknown.
-    pub fn unknown_dimension(v: Variable) -> Dimension {
+    pub fn unknown_dimension(v: UnknownDimensionIndex) -> Dimension {
         Dimension { unknown: vec![(v, Ratio::ONE)], ..Dimension::new(0, 0, 0) }
     }
 
@@ -37,7 +37,7 @@ impl Dimension {
     }
 
     /// Returns the exponent of an unknown dimension.
-    pub fn exponent_of_variable(&self, v: Variable) -> Ratio {
+    pub fn exponent_of_unknown(&self, v: UnknownDimensionIndex) -> Ratio {
         self.unknown.iter().find(|(u, _)| *u == v).map_or(Ratio::ZERO, |(_, e)| *e)
     }
 

@@ -5,7 +5,7 @@ use super::callable::COLLISION;
 
 /// A method of a body or an inertia.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Method {
+pub enum BodyOrInertiaMethod {
     /// Point of a body: `body.at(vector)`.
     At,
     /// `body.rotated(rotation, …)`: axes, or an inertia, after successive rotations about the rotated axes.
@@ -16,14 +16,14 @@ pub enum Method {
     Surface(SurfaceId),
 }
 
-impl Method {
+impl BodyOrInertiaMethod {
     /// Returns the method of a name and a number of arguments.
-    pub fn find_by_name_and_argument_count(name: &str, count: usize) -> Option<Method> {
+    pub fn find_by_name_and_argument_count(name: &str, count: usize) -> Option<BodyOrInertiaMethod> {
         match name {
-            "at" => Some(Method::At),
-            "rotated" => Some(Method::Rotated),
-            COLLISION => Some(Method::Collision),
-            _ => SurfaceId::find_by_name_and_argument_count(name, count).map(Method::Surface),
+            "at" => Some(BodyOrInertiaMethod::At),
+            "rotated" => Some(BodyOrInertiaMethod::Rotated),
+            COLLISION => Some(BodyOrInertiaMethod::Collision),
+            _ => SurfaceId::find_closest_by_argument_count(name, count).map(BodyOrInertiaMethod::Surface),
         }
     }
 }

@@ -51,7 +51,7 @@ macro_rules! table {
 
 /// Words, separated by spaces, and what is meant by them: a word of the language, or a sentence if it holds a
 /// space. Words are looked up in lower case and without underscores.
-pub type Words = &'static [(&'static str, &'static str)];
+pub type WordsWithMeanings = &'static [(&'static str, &'static str)];
 
 pub mod argument;
 pub mod callable;
@@ -71,7 +71,7 @@ pub use elements::{
     ArgumentQuantity, ArgumentRelation, ElementKind, ForceKind, ForceLawVariables, JointKind, Key, OtherKind,
 };
 pub use functions::{FunctionDependence, FunctionId, UnitRule};
-pub use methods::Method;
+pub use methods::BodyOrInertiaMethod;
 pub use names::{Builtin, axis_index_of_name};
 pub use rotations::Rotation;
 pub use solids::Solid;

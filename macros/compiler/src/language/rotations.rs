@@ -23,7 +23,7 @@ const fn rotation_row(
     RotationRow { name, synonyms, arguments, natural: false }
 }
 
-const fn natural_rotation_row(name: &'static str, arguments: &'static [Argument]) -> RotationRow {
+const fn natural_axes_row(name: &'static str, arguments: &'static [Argument]) -> RotationRow {
     RotationRow { name, synonyms: "", arguments, natural: true }
 }
 
@@ -50,12 +50,12 @@ table! {
         Quaternion = rotation_row("quaternion", "quat q",
             &[number_argument("x"), number_argument("y"), number_argument("z"), number_argument("w")]);
         /// Axes of cylindrical coordinates of a vector.
-        Cylindrical = natural_rotation_row("cylindrical", &[VECTOR]);
+        Cylindrical = natural_axes_row("cylindrical", &[VECTOR]);
         /// Axes of spherical coordinates of a vector.
-        Spherical = natural_rotation_row("spherical", &[VECTOR]);
+        Spherical = natural_axes_row("spherical", &[VECTOR]);
         /// Tangent, normal and binormal of a curve (Frenet and Serret).
-        Frenet = natural_rotation_row("frenet",
-            &[Argument::length("curve"), Argument::new("coordinate", ArgumentKind::Coordinate)]);
+        Frenet = natural_axes_row("frenet",
+            &[Argument::length_argument("curve"), Argument::new("coordinate", ArgumentKind::Coordinate)]);
     }
 }
 

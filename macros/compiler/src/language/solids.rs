@@ -2,7 +2,7 @@
 
 use super::{Argument, ArgumentKind};
 use crate::expr::{Expr, Mat3, Sym3, Vec3};
-use crate::mechanism::PieceKind;
+use crate::mechanism::PieceShape;
 
 /// Row of the table of solids.
 #[derive(Debug)]
@@ -14,7 +14,7 @@ pub struct SolidRow {
     /// The arguments; a direction comes last, and the masses and lengths are not negative.
     pub arguments: &'static [Argument],
     /// Shape of the drawing; `None` for individual moments of inertia.
-    pub piece: Option<PieceKind>,
+    pub piece: Option<PieceShape>,
     /// Function that returns the inertia from the values of the arguments without the direction, and from the
     /// direction.
     pub inertia: for<'g> fn(&[Expr<'g>], Vec3<'g>) -> Sym3<'g>,
@@ -22,12 +22,12 @@ pub struct SolidRow {
 
 const MASS: Argument = Argument::MASS;
 const AXIS: Argument = Argument::AXIS;
-const RADIUS: Argument = Argument::length("radius");
-const LENGTH: Argument = Argument::length("length");
-const HEIGHT: Argument = Argument::length("height");
-const X: Argument = Argument::length("x length");
-const Y: Argument = Argument::length("y length");
-const Z: Argument = Argument::length("z length");
+const RADIUS: Argument = Argument::length_argument("radius");
+const LENGTH: Argument = Argument::length_argument("length");
+const HEIGHT: Argument = Argument::length_argument("height");
+const X: Argument = Argument::length_argument("x length");
+const Y: Argument = Argument::length_argument("y length");
+const Z: Argument = Argument::length_argument("z length");
 
 const fn inertia_argument(name: &'static str) -> Argument {
     Argument::new(name, ArgumentKind::Inertia)
@@ -39,19 +39,19 @@ table! {
         /// Thin rod, by mass, length and axis.
         Rod = SolidRow {
             name: "rod", synonyms: "bar stick thinrod slenderrod beam line",
-            arguments: &[MASS, LENGTH, AXIS], piece: Some(PieceKind::Rod),
+            arguments: &[MASS, LENGTH, AXIS], piece: Some(PieceShape::Rod),
             inertia: |n, axis| axisymmetric_inertia(n[0].zero(), n[0] * n[1].square() * (1.0 / 12.0), axis),
         };
         /// Thin ring, a homogeneous solid of inertia expressions.
         Ring = SolidRow {
             name: "ring", synonyms: "hoop",
-            arguments: &[MASS, RADIUS, AXIS], piece: Some(PieceKind::Ring),
+            arguments: &[MASS, RADIUS, AXIS], piece: Some(PieceShape::Ring),
             inertia: |n, axis| axisymmetric_inertia(n[0] * n[1].square(), n[0] * n[1].square() * 0.5, axis),
         };
         /// Thin disk, a homogeneous solid of inertia expressions.
         Disk = SolidRow {
             name: "disk", synonyms: "disc",
-            arguments: &[MASS, RADIUS, AXIS], piece: Some(PieceKind::Disk),
+            arguments: &[MASS, RADIUS, AXIS], piece: Some(PieceShape::Disk),
             inertia: |n, axis| axisymmetric_inertia(
                 n[0] * n[1].square() * 0.5, n[0] * n[1].square() * 0.25, axis,
             ),
@@ -59,7 +59,7 @@ table! {
         /// Solid cylinder, for inertia expressions.
         Cylinder = SolidRow {
             name: "cylinder", synonyms: "",
-            arguments: &[MASS, RADIUS, HEIGHT, AXIS], piece: Some(PieceKind::Cylinder),
+            arguments: &[MASS, RADIUS, HEIGHT, AXIS], piece: Some(PieceShape::Cylinder),
             inertia: |n, axis| {
                 let axial = n[0] * n[1].square() * 0.5;
                 let transverse = n[1].square() * 0.25 + n[2].square() * (1.0 / 12.0);
@@ -70,9 +70,10 @@ table! {
         Tube = SolidRow {
             name: "tube", synonyms: "pipe hollowcylinder",
             arguments: &[
-                MASS, Argument::length("inner radius"), Argument::length("outer radius"), HEIGHT, AXIS,
+                MASS, Argument::length_argument("inner radius"), Argument::length_argument("outer radius"),
+                    HEIGHT, AXIS,
             ],
-            piece: Some(PieceKind::Tube),
+            piece: Some(PieceShape::Tube),
             inertia: |n, axis| {
                 let radii = n[1].square() + n[2].square();
                 axisymmetric_inertia(
@@ -83,7 +84,7 @@ table! {
         /// Solid cone, for inertia expressions.
         Cone = SolidRow {
             name: "cone", synonyms: "",
-            arguments: &[MASS, RADIUS, HEIGHT, AXIS], piece: Some(PieceKind::Cone),
+            arguments: &[MASS, RADIUS, HEIGHT, AXIS], piece: Some(PieceShape::Cone),
             inertia: |n, axis| {
                 let axial = n[0] * n[1].square() * 0.3;
                 let transverse = n[1].square() * 0.15 + n[2].square() * 0.0375;
@@ -93,7 +94,7 @@ table! {
         /// Capsule: a cylinder of the given height between two half balls, for inertia expressions.
         Capsule = SolidRow {
             name: "capsule", synonyms: "pill",
-            arguments: &[MASS, RADIUS, HEIGHT, AXIS], piece: Some(PieceKind::Capsule),
+            arguments: &[MASS, RADIUS, HEIGHT, AXIS], piece: Some(PieceShape::Capsule),
             inertia: |n, axis| {
                 let (m, r, h) = (n[0], n[1], n[2]);
                 // Volumes over π r²: h of the cylinder, 4 r / 3 of the two halves of the ball.
@@ -108,31 +109,31 @@ table! {
         /// Solid ball, for inertia expressions.
         Sphere = SolidRow {
             name: "sphere", synonyms: "ball",
-            arguments: &[MASS, RADIUS], piece: Some(PieceKind::Sphere),
+            arguments: &[MASS, RADIUS], piece: Some(PieceShape::Sphere),
             inertia: |n, _| Sym3::multiple_of_identity(n[0] * n[1].square() * 0.4),
         };
         /// Thin hollow ball, for inertia expressions.
         Shell = SolidRow {
             name: "shell", synonyms: "hollowsphere sphericalshell",
-            arguments: &[MASS, RADIUS], piece: Some(PieceKind::Sphere),
+            arguments: &[MASS, RADIUS], piece: Some(PieceShape::Sphere),
             inertia: |n, _| Sym3::multiple_of_identity(n[0] * n[1].square() * (2.0 / 3.0)),
         };
         /// Solid cuboid, for inertia expressions.
         Cuboid = SolidRow {
             name: "cuboid", synonyms: "cube brick block cuboid3 parallelepiped rectangle",
-            arguments: &[MASS, X, Y, Z], piece: Some(PieceKind::Cuboid),
+            arguments: &[MASS, X, Y, Z], piece: Some(PieceShape::Cuboid),
             inertia: |n, _| diagonal_inertia_of_lengths(n[0] * (1.0 / 12.0), n),
         };
         /// Solid cuboid under the name `box`, for inertia expressions.
         Box = SolidRow {
             name: "box", synonyms: "",
-            arguments: &[MASS, X, Y, Z], piece: Some(PieceKind::Cuboid),
+            arguments: &[MASS, X, Y, Z], piece: Some(PieceShape::Cuboid),
             inertia: |n, _| diagonal_inertia_of_lengths(n[0] * (1.0 / 12.0), n),
         };
         /// Thin rectangular plate, for inertia expressions.
         Plate = SolidRow {
             name: "plate", synonyms: "sheet lamina",
-            arguments: &[MASS, X, Y], piece: Some(PieceKind::Cuboid),
+            arguments: &[MASS, X, Y], piece: Some(PieceShape::Cuboid),
             inertia: |n, _| {
                 let m = n[0] * (1.0 / 12.0);
                 diagonal_inertia([m * n[2].square(), m * n[1].square(), m * (n[1].square() + n[2].square())])
@@ -142,9 +143,10 @@ table! {
         Ellipsoid = SolidRow {
             name: "ellipsoid", synonyms: "",
             arguments: &[
-                MASS, Argument::length("x radius"), Argument::length("y radius"), Argument::length("z radius"),
+                MASS, Argument::length_argument("x radius"), Argument::length_argument("y radius"),
+                    Argument::length_argument("z radius"),
             ],
-            piece: Some(PieceKind::Ellipsoid),
+            piece: Some(PieceShape::Ellipsoid),
             inertia: |n, _| diagonal_inertia_of_lengths(n[0] * 0.2, n),
         };
         /// Three principal moments of inertia instead of a solid.

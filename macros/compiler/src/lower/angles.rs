@@ -38,7 +38,7 @@ impl Angles {
                 && all
             {
                 angles.covered[k] = true;
-                angles.add(f, angle, k);
+                angles.add_sine_or_cosine(f, angle, k);
             }
         }
         for angle in &angles.list {
@@ -58,7 +58,7 @@ impl Angles {
         angles
     }
 
-    fn add(&mut self, f: Elementary, angle: Operand, k: usize) {
+    fn add_sine_or_cosine(&mut self, f: Elementary, angle: Operand, k: usize) {
         let known = self.list.iter().position(|a| a.angle == angle);
         let at = known.unwrap_or_else(|| {
             self.list.push(Angle { angle, sine: None, cosine: None });
@@ -90,14 +90,14 @@ impl Angles {
 /// Returns the first input of an angle that is an input, or an operation on inputs.
 fn first_argument_symbol_of_angle(program: &Program, angle: Operand) -> Option<Symbol> {
     let mut first = None;
-    let mut note = |o: Operand| {
+    let mut keep_first_symbol = |o: Operand| {
         if let Operand::Symbol(s) = o {
             first = first.or(Some(s));
         }
     };
     match angle {
-        Operand::Value(k) => program.instructions[k].visit_operands(&mut note),
-        own => note(own),
+        Operand::Value(k) => program.instructions[k].visit_operands(&mut keep_first_symbol),
+        own => keep_first_symbol(own),
     }
     first
 }

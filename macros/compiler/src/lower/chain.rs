@@ -44,7 +44,7 @@ impl Program {
         if ends.iter().any(|t| self.is_fusable_product(*t)) {
             return None;
         }
-        let chain_from_end = |from: usize| {
+        let sum_starting_with_end = |from: usize| {
             let mut sum = Sum { additions: vec![k], terms: Vec::new() };
             self.collect_terms(ends[1 - from], &mut sum).then(|| {
                 sum.additions.reverse();
@@ -53,7 +53,7 @@ impl Program {
                 sum
             })
         };
-        chain_from_end(0).or_else(|| chain_from_end(1))
+        sum_starting_with_end(0).or_else(|| sum_starting_with_end(1))
     }
 
     /// Collects the terms of a sum from the last to the first, which must be a product; returns false if it

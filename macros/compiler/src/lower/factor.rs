@@ -131,13 +131,14 @@ impl Program {
     /// Returns the other factor of a term that is a product with this factor.
     fn cofactor_of_term(&self, term: Term, factor: Operand) -> Option<Term> {
         let (a, b) = self.factors_of_single_use_product(term.operand)?;
-        let is_opposite_of_factor = |x: Operand| match (x, factor) {
+        let sign_relative_to_factor = |x: Operand| match (x, factor) {
             (Operand::Const(x), Operand::Const(f)) if x == -f => Some(true),
             (x, f) if x == f => Some(false),
             _ => None,
         };
-        let (other, opposite) =
-            is_opposite_of_factor(a).map(|o| (b, o)).or_else(|| is_opposite_of_factor(b).map(|o| (a, o)))?;
+        let (other, opposite) = sign_relative_to_factor(a)
+            .map(|o| (b, o))
+            .or_else(|| sign_relative_to_factor(b).map(|o| (a, o)))?;
         Some(Term { operand: other, negative: term.negative != opposite })
     }
 
@@ -153,7 +154,7 @@ impl Program {
             if let Some(factor) = group.factor {
                 value.operand = self.append_instruction(Op::Mul(at(factor), value.operand));
             }
-            sum = Some(sum.map_or(value, |sum| self.append_sum_of_terms(sum, value)));
+            sum = Some(sum.map_or(value, |sum| self.append_sum_of_two_terms(sum, value)));
         }
         match sum {
             Some(Term { operand, negative: true }) => self.append_instruction(Op::Neg(operand)),
@@ -170,11 +171,11 @@ impl Program {
         let rest = terms.iter().filter(|t| signed_constant(t).is_none());
         let mut all = rest.map(|t| Term { operand: at(t.operand), ..*t }).chain(constant);
         let first = all.next().unwrap_or(Term::positive_term(Operand::Const(0.0)));
-        all.fold(first, |sum, term| self.append_sum_of_terms(sum, term))
+        all.fold(first, |sum, term| self.append_sum_of_two_terms(sum, term))
     }
 
     /// Appends the instruction for a sum of two terms to a program.
-    fn append_sum_of_terms(&mut self, a: Term, b: Term) -> Term {
+    fn append_sum_of_two_terms(&mut self, a: Term, b: Term) -> Term {
         let (op, negative) = Term::addition_operation(a, b);
         Term { operand: self.append_instruction(op), negative }
     }

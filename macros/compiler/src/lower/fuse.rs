@@ -71,9 +71,11 @@ impl Program {
     pub(super) fn move_products_next_to_sums(self) -> Program {
         let n = self.instructions.len();
         let waits = self.fused_product_flags();
-        let product_to_place = |k: usize| self.product_to_fuse(k).map(Operand::instruction_index);
-        let order: Vec<usize> =
-            (0..n).filter(|k| !waits[*k]).flat_map(|k| product_to_place(k).into_iter().chain([k])).collect();
+        let index_of_product_to_fuse = |k: usize| self.product_to_fuse(k).map(Operand::instruction_index);
+        let order: Vec<usize> = (0..n)
+            .filter(|k| !waits[*k])
+            .flat_map(|k| index_of_product_to_fuse(k).into_iter().chain([k]))
+            .collect();
         match order.iter().enumerate().all(|(place, k)| place == *k) {
             true => self,
             false => self.reorder_instructions(&order),

@@ -16,7 +16,7 @@ pub fn node_of_hoisted_symbol(symbol: Symbol) -> Option<(Id, bool)> {
 
 /// Replaces symbols of hoisted nodes by other symbols.
 pub fn replace_hoisted_symbols(program: &mut Program, place: &mut dyn FnMut(Id, bool) -> Symbol) {
-    let mut placed = |o: Operand| match o {
+    let mut with_hoisted_symbol_replaced = |o: Operand| match o {
         Operand::Symbol(s) => match node_of_hoisted_symbol(s) {
             Some((id, negative)) => Operand::Symbol(place(id, negative)),
             None => o,
@@ -24,10 +24,10 @@ pub fn replace_hoisted_symbols(program: &mut Program, place: &mut dyn FnMut(Id, 
         _ => o,
     };
     for op in &mut program.instructions {
-        *op = op.map_operands(&mut placed);
+        *op = op.map_operands(&mut with_hoisted_symbol_replaced);
     }
     for output in &mut program.outputs {
-        *output = placed(*output);
+        *output = with_hoisted_symbol_replaced(*output);
     }
     if let Some(program) = &mut program.simd {
         replace_hoisted_symbols(program, place);
@@ -49,7 +49,7 @@ pub(super) fn is_constant_or_hoisted(o: Operand) -> bool {
 }
 
 /// Returns the negative of a constant or hoisted value.
-pub(super) fn negate_hoisted(o: Operand) -> Operand {
+pub(super) fn negate_constant_or_hoisted(o: Operand) -> Operand {
     match o {
         Operand::Const(c) => Operand::Const(-c),
         Operand::Symbol(Symbol(s)) => Operand::Symbol(Symbol(s ^ MINUS)),
@@ -95,7 +95,7 @@ mod tests {
         let g = Graph::new();
         let [m, l, x, y] = [0, 1, 2, 3].map(|k| g.symbol(Symbol(k)));
         let is_parameter_symbol = |s: Symbol| s.0 < 2;
-        let value_of_symbol = |s: Symbol| 0.7 + f64::from(s.0);
+        let test_number_of_symbol = |s: Symbol| 0.7 + f64::from(s.0);
         let ml = m * l;
         for (outputs, operations) in [
             (vec![ml * l.sin() * x], 1),
@@ -105,12 +105,12 @@ mod tests {
             (vec![x * y - ml, ml - x * y + y], 3),
         ] {
             let program = draft_with_hoisted_arguments(&outputs, &is_parameter_symbol);
-            let expected: Vec<f64> = outputs.iter().map(|e| eval_one(*e, &value_of_symbol)).collect();
+            let expected: Vec<f64> = outputs.iter().map(|e| eval_one(*e, &test_number_of_symbol)).collect();
             let found = program.interpret_program(&|s| match node_of_hoisted_symbol(s) {
                 Some((id, negative)) => {
-                    eval_one(g.expr(id), &value_of_symbol) * if negative { -1.0 } else { 1.0 }
+                    eval_one(g.expr(id), &test_number_of_symbol) * if negative { -1.0 } else { 1.0 }
                 }
-                None => value_of_symbol(s),
+                None => test_number_of_symbol(s),
             });
             for (found, expected) in found.iter().zip(&expected) {
                 assert!((found - expected).abs() < 1e-14, "{found} is not {expected}");

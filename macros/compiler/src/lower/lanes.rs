@@ -58,7 +58,7 @@ impl ValueLaneCounts {
     }
 
     /// Records the number of SIMD lanes of the next instruction.
-    pub(super) fn record_lanes(&mut self, op: &Op) {
+    pub(super) fn record_lane_count(&mut self, op: &Op) {
         let width = self.width_of_operation(op);
         self.widths.push(width);
     }
@@ -119,7 +119,7 @@ impl Program {
     pub fn lane_counts(&self) -> Vec<usize> {
         let mut lanes = ValueLaneCounts::program_input_lane_counts(self);
         for op in &self.instructions {
-            lanes.record_lanes(op);
+            lanes.record_lane_count(op);
         }
         lanes.widths
     }

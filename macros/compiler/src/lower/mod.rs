@@ -25,7 +25,7 @@ mod times;
 
 pub use angles::{Angle, Angles};
 pub use hoist::{node_of_hoisted_symbol, replace_hoisted_symbols};
-pub use program::{Counts, Op, Operand, Program};
+pub use program::{Op, Operand, OperationCounts, Program};
 
 /// Drafts a program of the outputs. Products and sums are separate instructions until [`pipeline::FINISH`] or
 /// [`pipeline::PART`] fuses them.
@@ -33,8 +33,8 @@ pub fn lower(outputs: &[Expr<'_>]) -> Program {
     draft_with_hoisted_arguments(outputs, &|_| false)
 }
 
-/// Drafts a program of the outputs that takes values which depend on `known` symbols alone as arguments, see the
-/// module `hoist`.
+/// Drafts a program of the outputs that takes values which depend on `known` symbols alone as arguments, see
+/// the module `hoist`.
 pub fn draft_with_hoisted_arguments(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> Program {
     let start = Instant::now();
     let program = select_instructions(outputs, known);
@@ -71,7 +71,7 @@ fn select_instructions(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> 
         let operand_of_node = |a: Id| values[index_of_node(a)];
         if hoisted[k] {
             values.push(match *node {
-                Node::Neg(a) => hoist::negate_hoisted(operand_of_node(a)),
+                Node::Neg(a) => hoist::negate_constant_or_hoisted(operand_of_node(a)),
                 _ => hoist::operand_of_hoisted_node(order[k]),
             });
             continue;
@@ -105,7 +105,7 @@ fn select_instructions(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> 
             }
         };
         values.push(Operand::Value(program.instructions.len()));
-        lanes.record_lanes(&op);
+        lanes.record_lane_count(&op);
         program.instructions.push(op);
     }
     program.outputs = outputs.iter().map(|o| values[index_of_node(o.id())]).collect();
@@ -152,7 +152,7 @@ fn collect_needed_nodes(outputs: &[Expr<'_>], places: &mut [u32]) -> Vec<Id> {
     // order.
     let last = outputs.iter().map(|o| o.id()).max().unwrap_or(0);
     let mut bits = vec![0_u64; last as usize / 64 + 1];
-    let mut visit = |id: Id, todo: &mut Vec<Id>| {
+    let mut push_unvisited_node = |id: Id, todo: &mut Vec<Id>| {
         let word = &mut bits[id as usize / 64];
         let bit = 1 << (id % 64);
         if *word & bit == 0 {
@@ -161,10 +161,10 @@ fn collect_needed_nodes(outputs: &[Expr<'_>], places: &mut [u32]) -> Vec<Id> {
         }
     };
     for output in outputs {
-        visit(output.id(), &mut todo);
+        push_unvisited_node(output.id(), &mut todo);
     }
     while let Some(id) = todo.pop() {
-        nodes[id as usize].visit_operands(|a| visit(a, &mut todo));
+        nodes[id as usize].visit_operands(|a| push_unvisited_node(a, &mut todo));
     }
     let mut order: Vec<Id> = Vec::new();
     for (k, &word) in bits.iter().enumerate() {

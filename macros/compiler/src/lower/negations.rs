@@ -239,7 +239,7 @@ impl<'a> StoredSigns<'a> {
             positive: Vec::new(),
         };
         for k in 0..self.negative.len() {
-            out.add(k);
+            out.append_rewritten_instruction(k);
         }
         let outputs = self.program.outputs.iter().map(|o| out.operand_with_plus(*o)).collect();
         let mut program = Program {
@@ -289,7 +289,7 @@ impl SignRewriter<'_> {
         negated
     }
 
-    fn add(&mut self, k: usize) {
+    fn append_rewritten_instruction(&mut self, k: usize) {
         let (signs, negative) = (self.signs, self.signs.negative[k]);
         let stored = match signs.program.instructions[k] {
             // The sign of the value records the negation.
@@ -363,7 +363,7 @@ impl SignRewriter<'_> {
                     self.tuples.len() - 1
                 }))
             }
-            known => hoist::negate_hoisted(known),
+            known => hoist::negate_constant_or_hoisted(known),
         }
     }
 }

@@ -111,7 +111,7 @@ pub struct Program {
     /// Operands that are the results of the program.
     pub outputs: Vec<Operand>,
     /// Operation counts before fusing; an operation on all lanes of a value counts once.
-    pub counts: Counts,
+    pub counts: OperationCounts,
     /// Constants of SIMD lanes, for each operand with one constant per lane.
     pub tuples: Vec<Vec<f64>>,
     /// Symbols of SIMD lanes, for each operand with one input per lane.
@@ -123,7 +123,7 @@ pub struct Program {
 /// Numbers of operations of a program: one for every arithmetic instruction; a negation counts as an
 /// addition.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counts {
+pub struct OperationCounts {
     /// Number of multiplications of the program.
     pub mul: usize,
     /// Number of additions, subtractions and negations of the program.
@@ -134,7 +134,7 @@ pub struct Counts {
     pub calls: usize,
 }
 
-impl Counts {
+impl OperationCounts {
     /// Returns the number of multiplications, additions and divisions together.
     pub fn total_operations(&self) -> usize {
         self.mul + self.add + self.div
@@ -206,8 +206,8 @@ impl Program {
     }
 
     /// Counts the operations of the program.
-    pub fn count_operations(&self) -> Counts {
-        let mut counts = Counts::default();
+    pub fn count_operations(&self) -> OperationCounts {
+        let mut counts = OperationCounts::default();
         for op in &self.instructions {
             match op {
                 Op::Neg(_) | Op::Add(..) | Op::Sub(..) | Op::Sum(..) | Op::Extreme(..) => counts.add += 1,
@@ -227,31 +227,32 @@ impl Program {
     /// Returns the symbols of the inputs that the program uses.
     pub fn used_symbols(&self) -> BTreeSet<Symbol> {
         let mut symbols: BTreeSet<Symbol> = self.gathers.iter().flatten().copied().collect();
-        let mut note = |o: Operand| match o {
+        let mut record_symbol = |o: Operand| match o {
             Operand::Symbol(s) => drop(symbols.insert(s)),
             Operand::Const(_) | Operand::Value(_) | Operand::Tuple(_) | Operand::Gather(_) => {}
         };
         for op in &self.instructions {
-            op.visit_operands(&mut note);
+            op.visit_operands(&mut record_symbol);
         }
-        self.outputs.iter().for_each(|o| note(*o));
+        self.outputs.iter().for_each(|o| record_symbol(*o));
         symbols
     }
 
     /// Returns whether every constant of the program is finite.
-    pub fn is_finite(&self) -> bool {
+    pub fn has_only_finite_constants(&self) -> bool {
         let mut finite = true;
-        let mut check = |o: Operand| finite &= !matches!(o, Operand::Const(c) if !c.is_finite());
+        let mut check_constant_is_finite =
+            |o: Operand| finite &= !matches!(o, Operand::Const(c) if !c.is_finite());
         for op in &self.instructions {
-            op.visit_operands(&mut check);
+            op.visit_operands(&mut check_constant_is_finite);
         }
-        self.outputs.iter().for_each(|o| check(*o));
+        self.outputs.iter().for_each(|o| check_constant_is_finite(*o));
         finite && self.tuples.iter().flatten().all(|c| c.is_finite())
     }
 
     /// Returns the text of an operation on constants whose result is not finite, if there is one. Operations
     /// on constants with a finite result may remain where a pass has changed a sign.
-    pub fn non_finite_constant_operation(&self) -> Option<String> {
+    pub fn nonfinite_constant_operation_text(&self) -> Option<String> {
         let constant_value = |o: Operand| match o {
             Operand::Const(c) => Some(c),
             _ => None,
@@ -289,12 +290,12 @@ impl Program {
     ) -> Vec<f64> {
         let joins = self.instructions.iter().any(|op| matches!(op, Op::Join(..)));
         match joins || !self.tuples.is_empty() || !self.gathers.is_empty() {
-            true => self.run_lanes::<MAX_LANES>(symbol, table),
-            false => self.run_lanes::<1>(symbol, table),
+            true => self.interpret_in_lanes::<MAX_LANES>(symbol, table),
+            false => self.interpret_in_lanes::<1>(symbol, table),
         }
     }
 
-    fn run_lanes<const N: usize>(
+    fn interpret_in_lanes<const N: usize>(
         &self,
         symbol: &dyn Fn(Symbol) -> f64,
         table: &dyn Fn(Lookup, [f64; 3]) -> f64,
@@ -302,7 +303,7 @@ impl Program {
         let lanes_from_list =
             |list: Vec<f64>| std::array::from_fn(|k| list.get(k).copied().unwrap_or(f64::NAN));
         let mut values: Vec<[f64; N]> = Vec::with_capacity(self.instructions.len());
-        let operand_lanes = |values: &[[f64; N]], o: Operand| match o {
+        let lane_values_of_operand = |values: &[[f64; N]], o: Operand| match o {
             Operand::Const(c) => [c; N],
             Operand::Symbol(s) => [symbol(s); N],
             Operand::Value(k) => values[k],
@@ -311,18 +312,20 @@ impl Program {
         };
         for op in &self.instructions {
             let result = match *op {
-                Op::Sum(n, a) => [operand_lanes(&values, a)[..n].iter().sum(); N],
-                Op::Lane(k, a) => [operand_lanes(&values, a)[k]; N],
-                Op::Join(n, a, b) => join_lanes(n, operand_lanes(&values, a), operand_lanes(&values, b)),
+                Op::Sum(n, a) => [lane_values_of_operand(&values, a)[..n].iter().sum(); N],
+                Op::Lane(k, a) => [lane_values_of_operand(&values, a)[k]; N],
+                Op::Join(n, a, b) => {
+                    join_lanes(n, lane_values_of_operand(&values, a), lane_values_of_operand(&values, b))
+                }
                 op => {
                     let mut operands = Vec::with_capacity(3);
-                    op.visit_operands(|o| operands.push(operand_lanes(&values, o)));
+                    op.visit_operands(|o| operands.push(lane_values_of_operand(&values, o)));
                     std::array::from_fn(|lane| op.evaluate_in_lane(|k| operands[k][lane], table))
                 }
             };
             values.push(result);
         }
-        self.outputs.iter().map(|o| operand_lanes(&values, *o)[0]).collect()
+        self.outputs.iter().map(|o| lane_values_of_operand(&values, *o)[0]).collect()
     }
 }
 

@@ -202,16 +202,16 @@ mod tests {
         assert_eq!(fused.counts, before);
         // Six quotients of squares and four additions, the last one fused with the late product.
         assert_eq!(fused.instructions.len(), 12 + 4);
-        let value_of_symbol = |s: Symbol| 1.0 + 0.1 * f64::from(s.0);
-        let value_of_index = |k: u32| value_of_symbol(Symbol(k));
+        let test_number_of_symbol = |s: Symbol| 1.0 + 0.1 * f64::from(s.0);
+        let test_number_of_index = |k: u32| test_number_of_symbol(Symbol(k));
         let expected = {
-            let late = (0..6).fold(value_of_index(0), |e, _| e * e / value_of_index(1));
-            late * value_of_index(2) + value_of_index(3) * value_of_index(4)
-                - value_of_index(5) * value_of_index(6)
-                + value_of_index(7)
-                + value_of_index(8) * value_of_index(9)
+            let late = (0..6).fold(test_number_of_index(0), |e, _| e * e / test_number_of_index(1));
+            late * test_number_of_index(2) + test_number_of_index(3) * test_number_of_index(4)
+                - test_number_of_index(5) * test_number_of_index(6)
+                + test_number_of_index(7)
+                + test_number_of_index(8) * test_number_of_index(9)
         };
-        assert!((fused.interpret_program(&value_of_symbol)[0] - expected).abs() < 1e-14);
+        assert!((fused.interpret_program(&test_number_of_symbol)[0] - expected).abs() < 1e-14);
         assert_eq!(fused.estimated_call_time(), 16 + 6 * (4 + 13) + 4);
     }
 }

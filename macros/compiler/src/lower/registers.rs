@@ -19,7 +19,7 @@ impl Program {
         let mut needs = InstructionOperands::from_program(self);
         let mut best: Vec<usize> = (0..self.instructions.len()).collect();
         let mut fewest = needs.maximum_live_values(&best);
-        let mut consider = |order: Vec<usize>, needs: &InstructionOperands| {
+        let mut keep_order_if_better = |order: Vec<usize>, needs: &InstructionOperands| {
             let live = needs.maximum_live_values(&order);
             if live < fewest {
                 (best, fewest) = (order, live);
@@ -31,9 +31,9 @@ impl Program {
             for _ in 0..2 {
                 results.reverse();
                 needs.results.clone_from(&results);
-                consider(needs.depth_first_order(self), &needs);
+                keep_order_if_better(needs.depth_first_order(self), &needs);
                 if self.instructions.len() <= GREEDY {
-                    consider(needs.schedule_backwards(), &needs);
+                    keep_order_if_better(needs.schedule_backwards(), &needs);
                 }
             }
         }

@@ -110,8 +110,11 @@ mod tests {
         let g = Graph::new();
         let before = lower(&long_operation_chains(&g)).run_passes(PART);
         let after = before.clone().schedule_instructions();
-        let value_of_symbol = |s: Symbol| 0.3 + 0.1 * f64::from(s.0);
-        assert_eq!(before.interpret_program(&value_of_symbol), after.interpret_program(&value_of_symbol));
+        let test_number_of_symbol = |s: Symbol| 0.3 + 0.1 * f64::from(s.0);
+        assert_eq!(
+            before.interpret_program(&test_number_of_symbol),
+            after.interpret_program(&test_number_of_symbol)
+        );
         assert_eq!(after.counts, before.counts);
         let mut uses = vec![0; after.instructions.len()];
         for (k, op) in after.instructions.iter().enumerate() {

@@ -103,8 +103,10 @@ impl Program {
             }
             fewest = operations;
             // Choose the signs of the new sums, and let sums begin with a product again.
-            let mut program =
-                self.program_of_sums(&sums).choose_signs_with_fewest_negations().order_terms_for_fusion();
+            let mut program = self
+                .program_with_rewritten_sums(&sums)
+                .choose_signs_with_fewest_negations()
+                .order_terms_for_fusion();
             program.counts = program.count_operations();
             let operations = program.counts.total_operations();
             if operations > cost.1 {
@@ -123,7 +125,7 @@ impl Program {
     }
 
     /// Returns the program in which the sums are computed as listed.
-    fn program_of_sums(&self, sums: &SumTable) -> Program {
+    fn program_with_rewritten_sums(&self, sums: &SumTable) -> Program {
         let mut out = SumWriter {
             sums,
             instructions: Vec::new(),
@@ -177,14 +179,16 @@ impl SumTable {
                 let sign = if term.negative { -1.0 } else { 1.0 };
                 let key = match term.operand {
                     Operand::Const(c) => {
-                        add(&mut terms, TermKey::One, sign * c);
+                        add_term_with_cancellation(&mut terms, TermKey::One, sign * c);
                         continue;
                     }
                     // A sum with this single use is merged into this one.
                     Operand::Value(a) => match sums.ends[a] {
                         Some(sum) if program.uses[a] == 1 && sums.sums[sum].len() + terms.len() < LONGEST => {
                             let inner = std::mem::take(&mut sums.sums[sum]);
-                            inner.iter().for_each(|(key, c)| add(&mut terms, *key, sign * c));
+                            inner
+                                .iter()
+                                .for_each(|(key, c)| add_term_with_cancellation(&mut terms, *key, sign * c));
                             continue;
                         }
                         Some(sum) => TermKey::Sum(sum),
@@ -192,7 +196,7 @@ impl SumTable {
                     },
                     o => sums.key_of_non_sum_operand(o, &mut known),
                 };
-                add(&mut terms, key, sign);
+                add_term_with_cancellation(&mut terms, key, sign);
             }
             sums.ends[k] = Some(sums.sums.len());
             sums.sums.push(terms);
@@ -261,13 +265,15 @@ impl SumTable {
             for (key, c) in &self.sums[k] {
                 match *key {
                     TermKey::Sum(inner) if self.sums[inner].len() <= short && !keeps[inner] => {
-                        self.sums[inner].iter().for_each(|(key, d)| add(&mut terms, *key, c * d));
+                        self.sums[inner]
+                            .iter()
+                            .for_each(|(key, d)| add_term_with_cancellation(&mut terms, *key, c * d));
                     }
-                    key => add(&mut terms, key, *c),
+                    key => add_term_with_cancellation(&mut terms, key, *c),
                 }
             }
-            let is_positive_value_term = |(key, c): &(TermKey, f64)| *key != TermKey::One && *c > 0.0;
-            if terms.len() <= MOST_TERMS && terms.iter().any(is_positive_value_term) {
+            let is_nonconstant_positive_term = |(key, c): &(TermKey, f64)| *key != TermKey::One && *c > 0.0;
+            if terms.len() <= MOST_TERMS && terms.iter().any(is_nonconstant_positive_term) {
                 self.sums[k] = terms;
             }
         }
@@ -281,12 +287,15 @@ impl SumTable {
             let mut with_new = Vec::new();
             for &k in &list {
                 let terms = &mut self.sums[k];
-                let Some(c) =
-                    terms.iter().find(|(key, _)| key.term_key_index() == pair.first_key()).map(|(_, c)| *c)
+                let Some(c) = terms
+                    .iter()
+                    .find(|(key, _)| key.term_key_index() == pair.first_key_index())
+                    .map(|(_, c)| *c)
                 else {
                     continue;
                 };
-                let is_member_of_pair = |key: u32| key == pair.first_key() || key == pair.second_term_key();
+                let is_member_of_pair =
+                    |key: u32| key == pair.first_key_index() || key == pair.second_key_index();
                 for (i, a) in terms.iter().enumerate() {
                     for b in &terms[i + 1..] {
                         if is_member_of_pair(a.0.term_key_index()) || is_member_of_pair(b.0.term_key_index())
@@ -299,9 +308,9 @@ impl SumTable {
                 with_new.extend(terms.iter().map(|term| (TermPair::new(*term, (new, c)), k)));
                 terms.push((new, c));
             }
-            pairs.add(with_new);
-            let [a, b] =
-                [pair.first_key(), pair.second_term_key()].map(|number| self.term_key_from_index(number));
+            pairs.add_new_pairs(with_new);
+            let [a, b] = [pair.first_key_index(), pair.second_key_index()]
+                .map(|number| self.term_key_from_index(number));
             self.sums.push(vec![(a, 1.0), (b, pair.coefficient_ratio())]);
         }
     }
@@ -325,7 +334,7 @@ struct AtomNumbers {
 }
 
 /// Adds a term to a sum and removes a term that cancels.
-fn add(terms: &mut Terms, key: TermKey, c: f64) {
+fn add_term_with_cancellation(terms: &mut Terms, key: TermKey, c: f64) {
     match terms.iter().position(|(other, _)| *other == key) {
         Some(k) => {
             terms[k].1 += c;
@@ -354,7 +363,7 @@ const LOST: Operand = Operand::Const(f64::NAN);
 
 impl SumWriter<'_> {
     fn append_instruction(&mut self, op: Op) -> Operand {
-        self.lanes.record_lanes(&op);
+        self.lanes.record_lane_count(&op);
         self.instructions.push(op);
         Operand::Value(self.instructions.len() - 1)
     }

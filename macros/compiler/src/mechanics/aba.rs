@@ -5,13 +5,17 @@
 use super::ldl::inverse_of_second_ldl_pivot;
 use super::supports_articulated_body_algorithm;
 use crate::expr::{Expr, Mat3, Sym3, Vec3};
-use crate::kinematics::{Dof, Joint, Spatial};
+use crate::kinematics::{Dof, Joint, SpatialVector};
 use crate::mechanics::passive::passive_forces;
 use crate::mechanism::{Inertia, Model};
 
 /// Returns `M⁻¹ r`, or `None` for a mechanism with coupled coordinates.
-pub fn accelerations<'g>(model: &Model<'g>, joints: &[Joint<'g>], r: &[Expr<'g>]) -> Option<Vec<Expr<'g>>> {
-    solve_articulated(model, joints, vec![Spatial::zero(model); joints.len()], r)
+pub fn inverse_mass_times_vector<'g>(
+    model: &Model<'g>,
+    joints: &[Joint<'g>],
+    r: &[Expr<'g>],
+) -> Option<Vec<Expr<'g>>> {
+    solve_articulated(model, joints, vec![SpatialVector::zero(model); joints.len()], r)
 }
 
 /// Returns `v̇ = M⁻¹ (τ − h)`, or `None` for a mechanism with coupled coordinates.
@@ -21,7 +25,7 @@ pub fn accelerations<'g>(model: &Model<'g>, joints: &[Joint<'g>], r: &[Expr<'g>]
 pub fn forward_dynamics<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
-    wrenches: Vec<Spatial<'g>>,
+    wrenches: Vec<SpatialVector<'g>>,
     tau: &[Expr<'g>],
 ) -> Option<Vec<Expr<'g>>> {
     let r: Vec<Expr<'g>> = tau.iter().zip(passive_forces(model, true)).map(|(t, h)| *t - h).collect();
@@ -31,7 +35,7 @@ pub fn forward_dynamics<'g>(
 fn solve_articulated<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
-    mut wrenches: Vec<Spatial<'g>>,
+    mut wrenches: Vec<SpatialVector<'g>>,
     r: &[Expr<'g>],
 ) -> Option<Vec<Expr<'g>>> {
     if !supports_articulated_body_algorithm(model) {
@@ -54,7 +58,7 @@ fn solve_articulated<'g>(
         }
         if let Some(parent) = joint.parent {
             inertias[parent.0] = inertia.add_to_parent(joint, &inertias[parent.0]);
-            wrenches[parent.0] = joint.add_wrench(&wrenches[parent.0], &wrench);
+            wrenches[parent.0] = joint.add_wrench_to_parent(&wrenches[parent.0], &wrench);
         }
     }
     Some(outward_recursion(model, joints, &handles))
@@ -66,9 +70,10 @@ fn outward_recursion<'g>(
     handles: &[Vec<EliminatedDof<'g>>],
 ) -> Vec<Expr<'g>> {
     let mut result = vec![model.graph.zero(); model.nv()];
-    let mut motions: Vec<Spatial<'g>> = Vec::with_capacity(joints.len());
+    let mut motions: Vec<SpatialVector<'g>> = Vec::with_capacity(joints.len());
     for (k, joint) in joints.iter().enumerate() {
-        let mut motion = joint.parent.map_or(Spatial::zero(model), |p| joint.twist_to_child(&motions[p.0]));
+        let mut motion =
+            joint.parent.map_or(SpatialVector::zero(model), |p| joint.twist_to_child(&motions[p.0]));
         for (dof, handle) in joint.dofs.iter().zip(handles[k].iter().rev()) {
             (result[dof.index], motion) = handle.acceleration_of_dof(&dof.subspace, &motion);
         }
@@ -86,8 +91,8 @@ fn outward_recursion<'g>(
 #[derive(Clone)]
 struct EliminatedDof<'g> {
     axis: Option<SpatialCoordinateAxis>,
-    column: Spatial<'g>,
-    scaled: Spatial<'g>,
+    column: SpatialVector<'g>,
+    scaled: SpatialVector<'g>,
     effort: Expr<'g>,
     r: Expr<'g>,
 }
@@ -100,7 +105,7 @@ struct SpatialCoordinateAxis {
 }
 
 impl SpatialCoordinateAxis {
-    fn coordinate_axis_of_subspace(s: &Spatial<'_>) -> Option<SpatialCoordinateAxis> {
+    fn coordinate_axis_of_subspace(s: &SpatialVector<'_>) -> Option<SpatialCoordinateAxis> {
         let mut nonzero = (0..6).filter(|e| !spatial_entry(s, *e).is_zero());
         let first = nonzero.next()?;
         let value = spatial_entry(s, first).constant_value().filter(|c| c.abs() == 1.0)?;
@@ -112,11 +117,11 @@ impl SpatialCoordinateAxis {
     }
 }
 
-fn spatial_entry<'g>(s: &Spatial<'g>, e: usize) -> Expr<'g> {
+fn spatial_entry<'g>(s: &SpatialVector<'g>, e: usize) -> Expr<'g> {
     if e < 3 { s.linear[e] } else { s.angular[e - 3] }
 }
 
-fn with_spatial_entry<'g>(mut s: Spatial<'g>, e: usize, value: Expr<'g>) -> Spatial<'g> {
+fn with_spatial_entry<'g>(mut s: SpatialVector<'g>, e: usize, value: Expr<'g>) -> SpatialVector<'g> {
     if e < 3 {
         s.linear.0[e] = value;
     } else {
@@ -131,7 +136,7 @@ impl<'g> EliminatedDof<'g> {
     fn new(
         dof: &Dof<'g>,
         inertia: &ArticulatedInertia<'g>,
-        wrench: &Spatial<'g>,
+        wrench: &SpatialVector<'g>,
         r: Expr<'g>,
         inverse: Option<Expr<'g>>,
     ) -> EliminatedDof<'g> {
@@ -146,13 +151,17 @@ impl<'g> EliminatedDof<'g> {
     }
 
     /// Returns the wrench that the joint transmits towards the parent.
-    fn wrench_transmitted_to_parent(&self, wrench: &Spatial<'g>) -> Spatial<'g> {
+    fn wrench_transmitted_to_parent(&self, wrench: &SpatialVector<'g>) -> SpatialVector<'g> {
         let sum = wrench.plus(&self.column.times_scalar(self.effort));
         self.axis.map_or(sum, |axis| with_spatial_entry(sum, axis.entry, axis.apply_sign(self.r)))
     }
 
     /// Returns the acceleration of the degree of freedom, and the link's motion including it.
-    fn acceleration_of_dof(&self, subspace: &Spatial<'g>, motion: &Spatial<'g>) -> (Expr<'g>, Spatial<'g>) {
+    fn acceleration_of_dof(
+        &self,
+        subspace: &SpatialVector<'g>,
+        motion: &SpatialVector<'g>,
+    ) -> (Expr<'g>, SpatialVector<'g>) {
         let a = self.effort - self.scaled.dot(motion);
         match self.axis {
             Some(axis) => {
@@ -182,8 +191,8 @@ impl<'g> ArticulatedInertia<'g> {
         }
     }
 
-    fn multiply_by_motion(&self, s: &Spatial<'g>) -> Spatial<'g> {
-        Spatial {
+    fn multiply_by_motion(&self, s: &SpatialVector<'g>) -> SpatialVector<'g> {
+        SpatialVector {
             linear: self.m * s.linear + self.h.transpose() * s.angular,
             angular: self.h * s.linear + self.i * s.angular,
         }
@@ -191,7 +200,11 @@ impl<'g> ArticulatedInertia<'g> {
 
     /// Returns `1 / D` of the second degree of freedom after elimination of the first, or `None` if the
     /// inertia does not couple the two, see [`inverse_of_second_ldl_pivot`].
-    fn second_pivot_inverse(&self, first: &Spatial<'g>, second: &Spatial<'g>) -> Option<Expr<'g>> {
+    fn second_pivot_inverse(
+        &self,
+        first: &SpatialVector<'g>,
+        second: &SpatialVector<'g>,
+    ) -> Option<Expr<'g>> {
         let column = self.multiply_by_motion(first);
         inverse_of_second_ldl_pivot(
             first.dot(&column),
@@ -228,9 +241,9 @@ impl<'g> ArticulatedInertia<'g> {
     ///
     /// `H' = H + [p]× M`, `I' = I − H [p]× − (H' [p]×)ᵀ`.
     fn add_to_parent(self, joint: &Joint<'g>, sum: &ArticulatedInertia<'g>) -> ArticulatedInertia<'g> {
-        let m = joint.rotation.sym_to_parent(self.m);
+        let m = joint.rotation.symmetric_tensor_in_parent_axes(self.m);
         let h = joint.rotation.tensor_in_parent_axes(self.h);
-        let i = joint.rotation.sym_to_parent(self.i);
+        let i = joint.rotation.symmetric_tensor_in_parent_axes(self.i);
         let p = Mat3::skew(joint.translation);
         let moved = h + p * m.full_matrix();
         let entry_of_product = |h: &Mat3<'g>, row: usize, column: usize| h.row(row).dot(p.column(column));
@@ -240,7 +253,7 @@ impl<'g> ArticulatedInertia<'g> {
             off: [(0, 1), (0, 2), (1, 2)]
                 .map(|(a, b)| entry_of_product(&h, a, b) + entry_of_product(&moved, b, a)),
         };
-        let sum_over_lanes = |e| joint.lane_sum(e);
+        let sum_over_lanes = |e| joint.sum_over_limb_lanes(e);
         let moved = Mat3::from_fn(|i, j| sum_over_lanes(moved.0[i][j]));
         ArticulatedInertia {
             m: sum.m + m.map(sum_over_lanes),

@@ -9,7 +9,7 @@ use crate::expr::eval::Tape;
 use crate::expr::sample::sample_of_symbol;
 use crate::expr::{Expr, Symbol, Vec3};
 use crate::kinematics::redundancy::OrthonormalRowBasis;
-use crate::kinematics::{Joint, Rows, mobility, random_configuration};
+use crate::kinematics::{CompiledConstraintRows, Joint, mobility, random_configuration};
 use crate::mechanism::{Model, Quantity};
 
 /// Number of random states at which conservation is tested.
@@ -42,7 +42,7 @@ pub fn conserved_quantities<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<
     }
     let candidates = candidate_quantities(model, joints);
     let values: Vec<Expr<'g>> = candidates.iter().map(|c| c.value).collect();
-    let (tape, motion) = (Tape::new(&values), NumericMotion::new(model, joints));
+    let (tape, motion) = (Tape::new(&values), NumericEquationsOfMotion::new(model, joints));
     let mut kept = vec![true; values.len()];
     let mut gradients: Vec<Vec<Vec<f64>>> = Vec::new();
     let places = consistent_configurations(model);
@@ -50,7 +50,7 @@ pub fn conserved_quantities<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<
         let state = SampledState::random_state(model, &motion, q, *seed, k as u64);
         let Some(rates) = state.and_then(|state| {
             gradients.push(state.value_gradients(&tape));
-            state.constant_value_flags(&motion, &tape)
+            state.conserved_value_flags(&motion, &tape)
         }) else {
             return Vec::new();
         };
@@ -61,16 +61,21 @@ pub fn conserved_quantities<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<
     }
     let mut bases: Vec<OrthonormalRowBasis> =
         gradients.iter().map(|_| OrthonormalRowBasis::default()).collect();
-    let mut adds = |k: usize| {
+    let mut adds_independent_gradient = |k: usize| {
         let mut any = false;
         for (basis, gradients) in bases.iter_mut().zip(&gradients) {
             let before = basis.rank();
-            basis.add(&gradients[k], DEPENDENT);
+            basis.add_independent_row(&gradients[k], DEPENDENT);
             any |= basis.rank() > before;
         }
         any
     };
-    candidates.into_iter().enumerate().filter(|(k, _)| kept[*k] && adds(*k)).map(|(_, c)| c).collect()
+    candidates
+        .into_iter()
+        .enumerate()
+        .filter(|(k, _)| kept[*k] && adds_independent_gradient(*k))
+        .map(|(_, c)| c)
+        .collect()
 }
 
 /// Returns all quantities of a mechanism that may be conserved, such as the momenta of its coordinates.
@@ -92,14 +97,18 @@ fn candidate_quantities<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Cons
     }
     let whole = momentum::centroidal_momentum(model, joints, &v);
     let center = energy::center_of_mass(model, joints);
-    let mut add = |what: &str, vector: Vec3<'g>, about: &str| {
+    let mut add_momentum_components = |what: &str, vector: Vec3<'g>, about: &str| {
         for (axis, value) in ["x", "y", "z"].into_iter().zip(vector.0) {
             all.push(ConservedQuantity { name: format!("{what} momentum along {axis}{about}"), value });
         }
     };
-    add("linear", whole.linear, "");
-    add("angular", whole.angular, ", about the centre of mass");
-    add("angular", whole.angular + center.cross(whole.linear), ", about the ground's origin");
+    add_momentum_components("linear", whole.linear, "");
+    add_momentum_components("angular", whole.angular, ", about the centre of mass");
+    add_momentum_components(
+        "angular",
+        whole.angular + center.cross(whole.linear),
+        ", about the ground's origin",
+    );
     all
 }
 
@@ -108,12 +117,16 @@ fn consistent_configurations(model: &Model<'_>) -> Vec<(Vec<f64>, u64)> {
     if model.constraints.is_empty() {
         return (0..STATES).map(|seed| (random_configuration(model, seed), seed)).collect();
     }
-    let found = mobility::sample_configurations(model, &Rows::new(model), &mut Diagnostics::new());
+    let found = mobility::sample_feasible_configurations(
+        model,
+        &CompiledConstraintRows::new(model),
+        &mut Diagnostics::new(),
+    );
     found.into_iter().cycle().take(STATES as usize).collect()
 }
 
 /// Equations of motion from which the accelerations are computed numerically.
-struct NumericMotion<'g> {
+struct NumericEquationsOfMotion<'g> {
     nv: usize,
     nc: usize,
     /// Mass matrix, bias forces, Jacobian by rows, then velocities and biases of the constraints.
@@ -122,15 +135,15 @@ struct NumericMotion<'g> {
     rates: Tape<'g>,
 }
 
-impl<'g> NumericMotion<'g> {
-    fn new(model: &Model<'g>, joints: &[Joint<'g>]) -> NumericMotion<'g> {
+impl<'g> NumericEquationsOfMotion<'g> {
+    fn new(model: &Model<'g>, joints: &[Joint<'g>]) -> NumericEquationsOfMotion<'g> {
         let mut all = added_mass::effective_mass_matrix(model, &crba::mass_matrix(model, joints)).concat();
         all.extend(rnea::inverse_dynamics(model, joints, &velocity_symbols(model), None));
         all.extend(constraints::jacobian(model).concat());
         all.extend(constraints::constraint_velocities(model));
         all.extend(constraints::constraint_biases(model));
         let (equations, rates) = (Tape::new(&all), Tape::new(&lagrange::configuration_rates(model)));
-        NumericMotion { nv: model.nv(), nc: model.constraints.len(), equations, rates }
+        NumericEquationsOfMotion { nv: model.nv(), nc: model.constraints.len(), equations, rates }
     }
 }
 
@@ -148,7 +161,7 @@ impl SampledState {
     /// `None` if the velocity is not finite. `at` is the seed of the velocity, `seed` that of the parameters.
     fn random_state(
         model: &Model<'_>,
-        motion: &NumericMotion<'_>,
+        motion: &NumericEquationsOfMotion<'_>,
         q: &[f64],
         seed: u64,
         at: u64,
@@ -190,7 +203,7 @@ impl SampledState {
     }
 
     /// Returns the time derivatives of the configuration, and the accelerations, without inputs.
-    fn state_derivatives(&self, motion: &NumericMotion<'_>) -> (Vec<f64>, Vec<f64>) {
+    fn state_derivatives(&self, motion: &NumericEquationsOfMotion<'_>) -> (Vec<f64>, Vec<f64>) {
         let (nv, nc) = (motion.nv, motion.nc);
         let values = self.tape_values(&motion.equations);
         let (mass, rest) = values.split_at(nv * nv);
@@ -238,7 +251,11 @@ impl SampledState {
     }
 
     /// Returns for each value whether it is constant along the motion, or `None` if the motion is not finite.
-    fn constant_value_flags(&self, motion: &NumericMotion<'_>, tape: &Tape<'_>) -> Option<Vec<bool>> {
+    fn conserved_value_flags(
+        &self,
+        motion: &NumericEquationsOfMotion<'_>,
+        tape: &Tape<'_>,
+    ) -> Option<Vec<bool>> {
         let (q, v) = self.state_derivatives(motion);
         let (no_q, no_v) = (vec![0.0; q.len()], vec![0.0; v.len()]);
         let whole = self.directional_derivatives(tape, 1.0, &q, &v);

@@ -21,12 +21,12 @@ use crate::mechanism::{ConstraintPivot, Model, Quantity, SuppliedQuantity};
 /// Returns `J`, with a row for each constraint and a column for each velocity.
 pub fn jacobian<'g>(model: &Model<'g>) -> Matrix<'g> {
     let rates: Vec<Expr<'g>> = model.constraints.iter().map(|c| c.rate).collect();
-    jacobian_of(model, &rates)
+    jacobian_of_rates(model, &rates)
 }
 
 /// Returns the derivatives of `rates` with respect to the velocities: a row for each rate, a column for each
 /// velocity.
-pub fn jacobian_of<'g>(model: &Model<'g>, rates: &[Expr<'g>]) -> Matrix<'g> {
+pub fn jacobian_of_rates<'g>(model: &Model<'g>, rates: &[Expr<'g>]) -> Matrix<'g> {
     let row_from_gradient = |gradient: Vec<(usize, Expr<'g>)>| {
         let mut row = vec![model.graph.zero(); model.nv()];
         gradient.into_iter().for_each(|(k, d)| row[k] = d);
@@ -165,19 +165,19 @@ pub fn solve_by_independent_velocities<'g>(
     let mut right: Matrix<'g> = rows.iter().map(|row| free.iter().map(|k| -row[*k]).collect()).collect();
     right.iter_mut().zip(bias).for_each(|(row, b)| row.push(-b));
     let (solved, sizes) = eliminate_rows(rows.clone(), right, &pivots);
-    let column = |c: usize| -> Vec<Expr<'g>> {
+    let null_space_column = |c: usize| -> Vec<Expr<'g>> {
         let independent_velocity_derivative =
             |k: usize| if free.get(c) == Some(&k) { g.one() } else { g.zero() };
-        let component_of_velocity = |k: usize| {
+        let column_entry_of_velocity = |k: usize| {
             pivots
                 .iter()
                 .find(|(_, j)| *j == k)
                 .map_or(independent_velocity_derivative(k), |(row, _)| solved[*row][c])
         };
-        (0..nv).map(component_of_velocity).collect()
+        (0..nv).map(column_entry_of_velocity).collect()
     };
-    let columns: Matrix<'g> = (0..free.len()).map(column).collect();
-    let start = column(free.len());
+    let columns: Matrix<'g> = (0..free.len()).map(null_space_column).collect();
+    let start = null_space_column(free.len());
     let dot_product =
         |a: &[Expr<'g>], b: &[Expr<'g>]| a.iter().zip(b).fold(g.zero(), |sum, (a, b)| sum + *a * *b);
     let multiply_by_mass =
@@ -309,8 +309,8 @@ pub fn constraint_first_derivatives<'g>(model: &Model<'g>, a: &[Expr<'g>]) -> Co
         .map(|(row, bias)| rate_along_accelerations(row) + bias)
         .collect();
     ConstraintTermDerivatives {
-        forces: symbolic::force_derivatives(model, &forces),
-        accelerations: symbolic::force_derivatives(model, &accelerations),
-        rates: symbolic::force_derivatives(model, &constraint_velocities(model)).by_q,
+        forces: symbolic::configuration_and_velocity_derivatives(model, &forces),
+        accelerations: symbolic::configuration_and_velocity_derivatives(model, &accelerations),
+        rates: symbolic::configuration_and_velocity_derivatives(model, &constraint_velocities(model)).by_q,
     }
 }

@@ -3,7 +3,7 @@
 use super::inertances;
 use super::shared_motions::SharedPartialVelocities;
 use crate::expr::{Expr, Vec3};
-use crate::kinematics::{Dof, Joint, Spatial, map_spatial};
+use crate::kinematics::{Dof, Joint, SpatialVector, map_spatial};
 use crate::mechanism::{Inertia, Model};
 use crate::vectorise::{LaneGroup, PathsToRoot, RootPropagationVisitor};
 
@@ -44,7 +44,7 @@ struct MassMatrixVisitor<'a, 'g> {
 }
 
 impl<'g> MassMatrixVisitor<'_, 'g> {
-    fn add(&mut self, own: &Dof<'g>, other: &Dof<'g>, entry: Expr<'g>) {
+    fn add_symmetric_entries(&mut self, own: &Dof<'g>, other: &Dof<'g>, entry: Expr<'g>) {
         let entry = entry * entry.num(own.ratio * other.ratio);
         self.matrix[own.index][other.index] += entry;
         if !std::ptr::eq(own, other) {
@@ -54,9 +54,9 @@ impl<'g> MassMatrixVisitor<'_, 'g> {
 }
 
 impl<'g> RootPropagationVisitor<'g> for MassMatrixVisitor<'_, 'g> {
-    type Item = Spatial<'g>;
+    type Quantity = SpatialVector<'g>;
 
-    fn start(&mut self, dof: usize) -> Spatial<'g> {
+    fn initial_quantity_of_dof(&mut self, dof: usize) -> SpatialVector<'g> {
         let ((link, row), joints) = (self.dofs[dof], self.joints);
         let own = &joints[link].dofs[row];
         if self.shared.shares_partial_velocity(link) {
@@ -66,18 +66,18 @@ impl<'g> RootPropagationVisitor<'g> for MassMatrixVisitor<'_, 'g> {
         }
         let wrench = momentum(&self.composites[link], &own.subspace);
         for other in &joints[link].dofs[..=row] {
-            self.add(own, other, other.subspace.dot(&wrench));
+            self.add_symmetric_entries(own, other, other.subspace.dot(&wrench));
         }
         wrench
     }
 
-    fn visit(&mut self, group: &LaneGroup<Spatial<'g>>) {
+    fn process_transformed_group(&mut self, group: &LaneGroup<SpatialVector<'g>>) {
         let joints = self.joints;
         for other in &joints[group.link].dofs {
             let subspace = map_spatial(&other.subspace, |c| group.repeat_for_group_members(c));
             for (dof, entry) in group.lanes_of_members(subspace.dot(&group.item)) {
                 let (link, row) = self.dofs[dof];
-                self.add(&joints[link].dofs[row], other, entry);
+                self.add_symmetric_entries(&joints[link].dofs[row], other, entry);
             }
         }
     }
@@ -95,9 +95,9 @@ pub fn composite_inertias<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<In
 }
 
 /// Returns the momentum (linear, and angular about the link's origin) of a body with a given twist.
-pub fn momentum<'g>(inertia: &Inertia<'g>, twist: &Spatial<'g>) -> Spatial<'g> {
+pub fn momentum<'g>(inertia: &Inertia<'g>, twist: &SpatialVector<'g>) -> SpatialVector<'g> {
     let h: Vec3<'g> = inertia.moment;
-    Spatial {
+    SpatialVector {
         linear: twist.linear * inertia.mass + twist.angular.cross(h),
         angular: inertia.tensor * twist.angular + h.cross(twist.linear),
     }

@@ -7,7 +7,7 @@
 use super::crba::Matrix;
 use super::{acceleration_symbols, rnea, velocity_symbols};
 use crate::expr::Expr;
-use crate::expr::replace::replace_all;
+use crate::expr::replace::substitute_symbols_in_all;
 use crate::kinematics::Joint;
 use crate::mechanism::{Model, Quantity};
 
@@ -37,8 +37,8 @@ mod subtree;
 pub mod symbolic;
 mod trunk;
 
-pub use factor::Factor;
-pub use trunk::{Inverse, Trunk, inverse_terms_for_runtime_loops};
+pub use factor::MatrixFactorisation;
+pub use trunk::{BlockInverseMassMatrix, TrunkLimbPartition, inverse_terms_for_runtime_loops};
 
 /// Derivatives of forces: a row for each entry of `τ`, a column for each velocity.
 pub struct ForceDerivatives<'g> {
@@ -87,8 +87,10 @@ pub fn inverse_dynamics<'g>(
         return found;
     }
     let symbols = acceleration_symbols(model);
-    let found =
-        symbolic::force_derivatives(model, &rnea::inverse_dynamics(model, joints, &v, Some(&symbols)));
+    let found = symbolic::configuration_and_velocity_derivatives(
+        model,
+        &rnea::inverse_dynamics(model, joints, &v, Some(&symbols)),
+    );
     if a == symbols {
         return found;
     }
@@ -97,7 +99,7 @@ pub fn inverse_dynamics<'g>(
         _ => None,
     };
     let substitute_accelerations =
-        |m: Matrix<'g>| m.iter().map(|row| replace_all(row, &acceleration_of_symbol)).collect();
+        |m: Matrix<'g>| m.iter().map(|row| substitute_symbols_in_all(row, &acceleration_of_symbol)).collect();
     ForceDerivatives {
         by_q: substitute_accelerations(found.by_q),
         by_v: substitute_accelerations(found.by_v),
@@ -105,14 +107,14 @@ pub fn inverse_dynamics<'g>(
 }
 
 /// Linearises the equations of motion about the motion under the forces `tau`.
-pub fn forward_dynamics<'g>(
+pub fn linearize_forward_dynamics<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
     mass: &Matrix<'g>,
     tau: &[Expr<'g>],
     method: DerivationMethod,
 ) -> LinearizedEquations<'g> {
-    let factor = Factor::new(mass, joints);
+    let factor = MatrixFactorisation::new(mass, joints);
     let bias = rnea::inverse_dynamics(model, joints, &velocity_symbols(model), None);
     let r = tau.iter().zip(&bias).map(|(t, h)| *t - *h).collect();
     let accelerations = factor.solve_factored(r);
@@ -129,8 +131,8 @@ pub fn linearize_equations<'g>(
     tau: &[Expr<'g>],
     method: DerivationMethod,
 ) -> LinearizedEquations<'g> {
-    let mut found = forward_dynamics(model, joints, mass, tau, method);
-    let by_state = symbolic::force_derivatives(model, tau);
+    let mut found = linearize_forward_dynamics(model, joints, mass, tau, method);
+    let by_state = symbolic::configuration_and_velocity_derivatives(model, tau);
     subtract_matrix(&mut found.forces.by_q, &by_state.by_q);
     subtract_matrix(&mut found.forces.by_v, &by_state.by_v);
     found.by_u = symbolic::input_derivatives_of_expressions(model, tau);

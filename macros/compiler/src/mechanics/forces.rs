@@ -3,30 +3,30 @@
 
 use crate::expr::replace::substitute_symbols;
 use crate::expr::{Expr, Vec3};
-use crate::kinematics::{Joint, Spatial, cached_velocity_gradient, express_in_link_axes, symbols_in};
-use crate::mechanism::{Input, LinkId, Model, Quantity, SumOfLinkVectors};
+use crate::kinematics::{Joint, SpatialVector, cached_velocity_gradient, express_in_link_axes, symbols_in};
+use crate::mechanism::{InputEffect, LinkId, Model, Quantity, SumOfLinkVectors};
 
 /// Returns the generalized forces of the inputs, `τ(q, u)`.
-pub fn generalized_forces<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Expr<'g>> {
+pub fn generalized_forces_of_inputs<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Expr<'g>> {
     let g = model.graph;
     let mut tau = vec![g.zero(); model.nv()];
-    let mut wrenches = vec![Spatial::zero(model); joints.len()];
+    let mut wrenches = vec![SpatialVector::zero(model); joints.len()];
     for (k, (_, input)) in model.inputs.iter().enumerate() {
         let u = Quantity::Input(k).expr(g);
         match input {
-            Input::Named => {}
-            Input::Coordinate(c) => tau[c.v.0] += u * g.num(c.ratio),
-            Input::Sum(terms, _) => {
+            InputEffect::Named => {}
+            InputEffect::Coordinate(c) => tau[c.v.0] += u * g.num(c.ratio),
+            InputEffect::Sum(terms, _) => {
                 for c in terms {
                     tau[c.v.0] += u * g.num(c.ratio);
                 }
             }
-            Input::Force { link, point, along } => {
+            InputEffect::Force { link, point, along } => {
                 let force = direction_in_link(joints, along, *link, Vec3::zero(g)) * u;
-                let wrench = Spatial { linear: force, angular: point.cross(force) };
+                let wrench = SpatialVector { linear: force, angular: point.cross(force) };
                 wrenches[link.0] = wrenches[link.0].plus(&wrench);
             }
-            Input::Torque { link, about } => {
+            InputEffect::Torque { link, about } => {
                 let moment = direction_in_link(joints, about, *link, Vec3::zero(g)) * u;
                 wrenches[link.0].angular += moment;
             }

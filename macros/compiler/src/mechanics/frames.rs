@@ -5,7 +5,7 @@
 //! position, twists and accelerations as linear and angular component in link axes.
 
 use crate::expr::{Expr, Graph, Mat3, Vec3};
-use crate::kinematics::{Joint, Spatial};
+use crate::kinematics::{Joint, SpatialVector};
 use crate::mechanism::{Model, NamedFrame, Pose, Quantity, SuppliedQuantity};
 
 /// Placement of a frame in the ground: rotation matrix and position.
@@ -31,7 +31,8 @@ impl<'g> Placement<'g> {
     /// Returns the placement of a frame that has the pose `pose` in this frame.
     pub fn compose_with(&self, pose: &Pose<'g>) -> Placement<'g> {
         // R_parent R: rows are rotated, so that the steps of the child's rotation apply to them one by one.
-        let rows: [Vec3<'g>; 3] = std::array::from_fn(|i| pose.rotation.to_child(self.rotation.row(i)));
+        let rows: [Vec3<'g>; 3] =
+            std::array::from_fn(|i| pose.rotation.vector_in_child_axes(self.rotation.row(i)));
         Placement {
             rotation: Mat3(rows.map(|r| r.0)),
             position: self.position + self.rotation * pose.translation,
@@ -52,14 +53,14 @@ fn parent_placement_argument<'g>(model: &Model<'g>) -> Placement<'g> {
 }
 
 /// Returns six entries of the motion of the parent as a spatial vector.
-fn spatial_argument<'g>(model: &Model<'g>, first: usize) -> Spatial<'g> {
+fn spatial_argument<'g>(model: &Model<'g>, first: usize) -> SpatialVector<'g> {
     let [linear, angular] =
         [first, first + 3].map(|first| vector_argument(model, SuppliedQuantity::Parent, first));
-    Spatial { linear, angular }
+    SpatialVector { linear, angular }
 }
 
 /// Returns the six components of a spatial vector.
-pub fn spatial_components<'g>(s: &Spatial<'g>) -> Vec<Expr<'g>> {
+pub fn spatial_components<'g>(s: &SpatialVector<'g>) -> Vec<Expr<'g>> {
     s.linear.0.iter().chain(&s.angular.0).copied().collect()
 }
 
@@ -84,7 +85,7 @@ pub fn frame_placement<'g>(model: &Model<'g>, frame: &NamedFrame<'g>) -> Placeme
 }
 
 /// Returns the twist of a link from its parent's (6 arguments, none for a root).
-pub fn link_twist<'g>(model: &Model<'g>, joint: &Joint<'g>, v: &[Expr<'g>]) -> Spatial<'g> {
+pub fn link_twist<'g>(model: &Model<'g>, joint: &Joint<'g>, v: &[Expr<'g>]) -> SpatialVector<'g> {
     let own = joint.twist_with_prescribed_motion(model, v);
     match joint.parent {
         None => own,
@@ -99,19 +100,19 @@ pub fn link_acceleration<'g>(
     joint: &Joint<'g>,
     v: &[Expr<'g>],
     a: &[Expr<'g>],
-) -> Spatial<'g> {
+) -> SpatialVector<'g> {
     let (twist, parent) = (spatial_argument(model, 0), spatial_argument(model, 6));
     joint.link_acceleration(model, joint.parent.map(|_| (&twist, &parent)), v, a)
 }
 
 /// Returns the twist of a named frame in ground axes, from its link's placement and twist (18 arguments).
-pub fn frame_twist<'g>(model: &Model<'g>, frame: &NamedFrame<'g>) -> Spatial<'g> {
+pub fn frame_twist<'g>(model: &Model<'g>, frame: &NamedFrame<'g>) -> SpatialVector<'g> {
     if frame.link.is_none() {
-        return Spatial::zero(model);
+        return SpatialVector::zero(model);
     }
     let (placement, twist) = (parent_placement_argument(model), spatial_argument(model, 12));
     let p = frame.pose.translation;
-    Spatial {
+    SpatialVector {
         linear: placement.rotation * (twist.linear + twist.angular.cross(p)),
         angular: placement.rotation * twist.angular,
     }
@@ -119,20 +120,20 @@ pub fn frame_twist<'g>(model: &Model<'g>, frame: &NamedFrame<'g>) -> Spatial<'g>
 
 /// Returns the acceleration of a named frame in ground axes, from its link's placement, twist and
 /// acceleration (24 arguments).
-pub fn frame_acceleration<'g>(model: &Model<'g>, frame: &NamedFrame<'g>) -> Spatial<'g> {
+pub fn frame_acceleration<'g>(model: &Model<'g>, frame: &NamedFrame<'g>) -> SpatialVector<'g> {
     if frame.link.is_none() {
-        return Spatial::zero(model);
+        return SpatialVector::zero(model);
     }
     let placement = parent_placement_argument(model);
     let (twist, acceleration) = (spatial_argument(model, 12), spatial_argument(model, 18));
     let (p, w) = (frame.pose.translation, twist.angular);
     let point = acceleration.linear + acceleration.angular.cross(p) + w.cross(w.cross(p));
-    Spatial { linear: placement.rotation * point, angular: placement.rotation * acceleration.angular }
+    SpatialVector { linear: placement.rotation * point, angular: placement.rotation * acceleration.angular }
 }
 
 /// Returns the columns of a frame's Jacobian for the degrees of freedom of one link: the twist of the frame
 /// per unit of velocity, in ground axes, from the link's placement and the frame's position (15 arguments).
-pub fn frame_jacobian_columns<'g>(model: &Model<'g>, joint: &Joint<'g>) -> Vec<Spatial<'g>> {
+pub fn frame_jacobian_columns<'g>(model: &Model<'g>, joint: &Joint<'g>) -> Vec<SpatialVector<'g>> {
     let placement = parent_placement_argument(model);
     let arm = vector_argument(model, SuppliedQuantity::Origin, 0) - placement.position;
     joint
@@ -141,7 +142,7 @@ pub fn frame_jacobian_columns<'g>(model: &Model<'g>, joint: &Joint<'g>) -> Vec<S
         .map(|dof| {
             let s = dof.subspace.times_scalar(model.graph.num(dof.ratio));
             let angular = placement.rotation * s.angular;
-            Spatial { linear: placement.rotation * s.linear + angular.cross(arm), angular }
+            SpatialVector { linear: placement.rotation * s.linear + angular.cross(arm), angular }
         })
         .collect()
 }

@@ -5,7 +5,7 @@
 use super::crba::Matrix;
 use super::{energy, ldl, momentum};
 use crate::expr::Expr;
-use crate::expr::replace::replace_all;
+use crate::expr::replace::substitute_symbols_in_all;
 use crate::kinematics::Joint;
 use crate::mechanism::{Model, Quantity};
 
@@ -35,7 +35,7 @@ pub fn derive<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &Matrix<'g>) ->
     } else {
         power - energy::kinetic_energy(model, joints, &velocity) + potential
     };
-    let mut rate = momentum::momentum_rate(model, joints, &velocity);
+    let mut rate = momentum::momentum_rate_without_inputs(model, joints, &velocity);
     rate.iter_mut().enumerate().for_each(|(k, rate)| *rate += Quantity::Force(k).expr(g));
     let hamiltonian = replace_velocities(&[hamiltonian], &velocity)[0];
     Hamilton { hamiltonian, momentum_rate: replace_velocities(&rate, &velocity), velocity }
@@ -44,7 +44,7 @@ pub fn derive<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &Matrix<'g>) ->
 /// Returns expressions with the velocity symbols replaced by `v`. Elements' energies and forces contain the
 /// velocity symbols of the mechanism.
 fn replace_velocities<'g>(e: &[Expr<'g>], v: &[Expr<'g>]) -> Vec<Expr<'g>> {
-    replace_all(e, &|s| match Quantity::from_symbol(s) {
+    substitute_symbols_in_all(e, &|s| match Quantity::from_symbol(s) {
         Quantity::Velocity(k) => Some(v[k]),
         _ => None,
     })

@@ -86,7 +86,7 @@ fn subtract_tangent_gradient<'g>(
 
 fn add_commutators<'g>(model: &Model<'g>, p: &[Expr<'g>], v: &[Expr<'g>], bias: &mut [Expr<'g>]) {
     let three_components = |e: &[Expr<'g>], k: usize| Vec3([e[k], e[k + 1], e[k + 2]]);
-    let mut add = |k: usize, term: Vec3<'g>| {
+    let mut add_to_bias = |k: usize, term: Vec3<'g>| {
         for i in 0..3 {
             bias[k + i] += term[i];
         }
@@ -94,11 +94,14 @@ fn add_commutators<'g>(model: &Model<'g>, p: &[Expr<'g>], v: &[Expr<'g>], bias: 
     for chart in &model.charts {
         match *chart {
             Chart::Plain(..) => {}
-            Chart::Ball(_, InV(k)) => add(k, three_components(v, k).cross(three_components(p, k))),
+            Chart::Ball(_, InV(k)) => add_to_bias(k, three_components(v, k).cross(three_components(p, k))),
             Chart::Free(_, InV(k)) => {
                 let (linear, w) = (three_components(v, k), three_components(v, k + 3));
-                add(k, w.cross(three_components(p, k)));
-                add(k + 3, w.cross(three_components(p, k + 3)) + linear.cross(three_components(p, k)));
+                add_to_bias(k, w.cross(three_components(p, k)));
+                add_to_bias(
+                    k + 3,
+                    w.cross(three_components(p, k + 3)) + linear.cross(three_components(p, k)),
+                );
             }
         }
     }

@@ -18,7 +18,7 @@ impl<'a, 'g> LimbContacts<'a, 'g> {
     /// velocity depends on one limb of a group of identical limbs, and all limbs of a group have the same
     /// number of them.
     pub fn new(limbs: &'a VectorisedMechanism<'g>, jacobian: &Matrix<'g>) -> Option<LimbContacts<'a, 'g>> {
-        let groups = limbs.limb_rows(jacobian)?;
+        let groups = limbs.group_rows_by_limb(jacobian)?;
         Some(LimbContacts { limbs, groups, merge: LaneMerger::new(limbs.model.graph), count: jacobian.len() })
     }
 
@@ -31,7 +31,7 @@ impl<'a, 'g> LimbContacts<'a, 'g> {
 
     /// Merges values, one for each contact velocity, into SIMD lanes. Returns `None` if the expressions of
     /// the limbs differ in structure.
-    pub fn merge_contact_values(&mut self, values: &[Expr<'g>]) -> Option<Vec<Expr<'g>>> {
+    pub fn merge_contact_values_into_lanes(&mut self, values: &[Expr<'g>]) -> Option<Vec<Expr<'g>>> {
         let mut out = values.to_vec();
         for row in self.groups.iter().flat_map(|group| &group.rows) {
             let all = self.merge.merge_lanes(&row.iter().map(|i| values[*i]).collect::<Vec<_>>())?;
@@ -42,7 +42,7 @@ impl<'a, 'g> LimbContacts<'a, 'g> {
 
     /// Merges matrix rows into SIMD lanes, one row for each contact velocity with a column for each velocity.
     /// Each row depends only on the limb of its contact velocity.
-    pub fn merge_rows(&mut self, rows: &Matrix<'g>) -> Option<Matrix<'g>> {
+    pub fn merge_jacobian_rows_into_lanes(&mut self, rows: &Matrix<'g>) -> Option<Matrix<'g>> {
         let mut out = vec![Vec::new(); self.count];
         for numbers in self.groups.iter().flat_map(|group| &group.rows) {
             let lanes: Vec<&[Expr<'g>]> = numbers.iter().map(|i| rows[*i].as_slice()).collect();

@@ -51,7 +51,7 @@ pub fn limb_contact_responses<'g>(
     limbs: &VectorisedMechanism<'g>,
     rows: &[Vec<Expr<'g>>],
 ) -> Option<Vec<Expr<'g>>> {
-    let groups = limbs.limb_rows(rows)?;
+    let groups = limbs.group_rows_by_limb(rows)?;
     let factor = LaneMassFactorisation::new(limbs, limbs.group_of_each_velocity());
     let (mut families, mut places) = (Vec::new(), BTreeMap::new());
     for LimbRows { group, width, rows: numbers } in groups {
@@ -62,7 +62,7 @@ pub fn limb_contact_responses<'g>(
         }
         let all = numbers.iter().map(|lanes| {
             let lane_rows: Vec<&[Expr<'g>]> = lanes.iter().map(|i| rows[*i].as_slice()).collect();
-            factor.solve_contact_row(limbs.merge_into_lanes(&lane_rows), group)
+            factor.solve_contact_row(limbs.merge_limb_rows_into_lanes(&lane_rows), group)
         });
         families.push(LimbGroupContactVelocities { group, width, rows: all.collect() });
     }
@@ -169,16 +169,17 @@ impl<'g> LaneMassFactorisation<'g> {
     ) -> Expr<'g> {
         let (first, second) = (&families[a.family], &families[b.family]);
         let (x, y) = (&first.rows[a.row].reduced, &second.rows[b.row].reduced);
-        let sum_over_velocities = |is_in: &dyn Fn(usize) -> bool, of: &dyn Fn(usize) -> [Expr<'g>; 2]| {
-            let terms = (0..x.len()).filter(|k| is_in(*k)).map(|k| {
-                let [x, y] = of(k);
-                x * (y * self.inverse[k])
-            });
-            terms.reduce(|a, b| a + b).unwrap_or_else(|| self.inverse[0].zero())
-        };
+        let inverse_weighted_dot_product =
+            |is_in: &dyn Fn(usize) -> bool, of: &dyn Fn(usize) -> [Expr<'g>; 2]| {
+                let terms = (0..x.len()).filter(|k| is_in(*k)).map(|k| {
+                    let [x, y] = of(k);
+                    x * (y * self.inverse[k])
+                });
+                terms.reduce(|a, b| a + b).unwrap_or_else(|| self.inverse[0].zero())
+            };
         let is_in_trunk = |k: usize| self.groups[k].is_none();
         if a.family != b.family {
-            return sum_over_velocities(&is_in_trunk, &|k| [x[k].lane(a.lane), y[k].lane(b.lane)]);
+            return inverse_weighted_dot_product(&is_in_trunk, &|k| [x[k].lane(a.lane), y[k].lane(b.lane)]);
         }
         let n = first.width;
         let by = (n + b.lane - a.lane) % n;
@@ -186,12 +187,15 @@ impl<'g> LaneMassFactorisation<'g> {
             return self.delassus_entry(families, b, a);
         }
         match by {
-            0 => sum_over_velocities(&|k| is_in_trunk(k) || self.groups[k] == Some(first.group), &|k| {
-                [x[k], y[k]]
-            })
+            0 => inverse_weighted_dot_product(
+                &|k| is_in_trunk(k) || self.groups[k] == Some(first.group),
+                &|k| [x[k], y[k]],
+            )
             .lane(a.lane),
-            _ => sum_over_velocities(&is_in_trunk, &|k| [x[k], cyclically_shifted_lanes(y[k], n, by)])
-                .lane(a.lane),
+            _ => {
+                inverse_weighted_dot_product(&is_in_trunk, &|k| [x[k], cyclically_shifted_lanes(y[k], n, by)])
+                    .lane(a.lane)
+            }
         }
     }
 }

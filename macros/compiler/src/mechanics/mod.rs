@@ -57,7 +57,9 @@ pub fn supports_articulated_body_algorithm(model: &Model<'_>) -> bool {
     model.inertances.is_empty()
         && model.acceleration_forces.is_empty()
         && model.links.iter().all(|link| {
-            let mut own = |c: &Coordinate| c.ratio == 1.0 && !std::mem::replace(&mut seen[c.v.0], true);
-            link.motion.has_constant_subspace() && link.motion.single_coordinate().is_none_or(&mut own)
+            let mut has_own_velocity =
+                |c: &Coordinate| c.ratio == 1.0 && !std::mem::replace(&mut seen[c.v.0], true);
+            link.motion.has_constant_subspace()
+                && link.motion.single_coordinate().is_none_or(&mut has_own_velocity)
         })
 }

@@ -3,7 +3,8 @@
 use crate::expr::replace::substitute_symbols;
 use crate::expr::{Expr, Function};
 use crate::kinematics::{
-    cached_velocity_gradient, coordinate_in_terms_of_q, coordinate_velocity, energy_gradient,
+    cached_velocity_gradient, coordinate_in_terms_of_q, coordinate_velocity,
+    generalized_force_opposing_energy,
 };
 use crate::mechanism::{Model, Quantity};
 
@@ -22,7 +23,7 @@ pub fn passive_forces<'g>(model: &Model<'g>, with_velocity: bool) -> Vec<Expr<'g
     }
     for energy in &model.potentials {
         // ∂U/∂q along the velocities at constant time, since time itself does no work on the coordinates.
-        for (k, d) in energy_gradient(model, *energy) {
+        for (k, d) in generalized_force_opposing_energy(model, *energy) {
             h[k] += d;
         }
     }

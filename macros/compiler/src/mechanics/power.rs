@@ -30,7 +30,7 @@ pub fn dissipated_power<'g>(model: &Model<'g>) -> Expr<'g> {
 
 /// Returns the power of the inputs, `v · τ(u)`.
 pub fn control_power<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Expr<'g> {
-    let tau = forces::generalized_forces(model, joints);
+    let tau = forces::generalized_forces_of_inputs(model, joints);
     tau.iter().zip(velocity_symbols(model)).fold(model.graph.zero(), |sum, (tau, v)| sum + *tau * v)
 }
 

@@ -5,7 +5,7 @@
 
 use super::crba::Matrix;
 use super::{constraints, forces, rnea};
-use crate::expr::replace::replace_all;
+use crate::expr::replace::substitute_symbols_in_all;
 use crate::expr::{Expr, Symbol};
 use crate::kinematics::{joints_of_model, symbols_in};
 use crate::mechanism::{ClosedFormJoint, Model, Quantity, ReleasedMechanism};
@@ -27,7 +27,7 @@ pub fn replace_reactions<'g>(model: &Model<'g>, e: &[Expr<'g>], touched: bool) -
     };
     let Some(released) = &model.released else {
         let all = constraints::multiplier_argument_symbols(model);
-        return replace_all(e, &|s| multiplier_of_symbol(s, &all));
+        return substitute_symbols_in_all(e, &|s| multiplier_of_symbol(s, &all));
     };
     let (held, multipliers) = forces_fixing_released_joints(model, released, touched);
     let expression_of_reaction_symbol = |s: Symbol| {
@@ -37,14 +37,14 @@ pub fn replace_reactions<'g>(model: &Model<'g>, e: &[Expr<'g>], touched: bool) -
         }
         let (joint, component) = (k / SIX, k % SIX);
         let index_among_released_joints = || released.joints.iter().position(|j| *j == joint);
-        reaction_of_multipliers(model, released, &multipliers, joint, component)
+        reaction_component_of_loop_joint(model, released, &multipliers, joint, component)
             .or_else(|| Some(held[SIX * index_among_released_joints()? + component]))
     };
-    replace_all(e, &expression_of_reaction_symbol)
+    substitute_symbols_in_all(e, &expression_of_reaction_symbol)
 }
 
 /// Returns one component of the reaction of a joint that closes a loop; `None` for other joints.
-fn reaction_of_multipliers<'g>(
+fn reaction_component_of_loop_joint<'g>(
     model: &Model<'g>,
     released: &ReleasedMechanism<'g>,
     multipliers: &[Expr<'g>],
@@ -60,7 +60,9 @@ fn reaction_of_multipliers<'g>(
             }
         }
     }
-    sum.map(|e| replace_all(&[e], &|s| is_released_coordinate(model, s).then(|| model.graph.zero()))[0])
+    sum.map(|e| {
+        substitute_symbols_in_all(&[e], &|s| is_released_coordinate(model, s).then(|| model.graph.zero()))[0]
+    })
 }
 
 /// Returns whether a symbol is a coordinate of a released joint, or the velocity of such a coordinate.
@@ -88,7 +90,7 @@ fn forces_fixing_released_joints<'g>(
     let a: Vec<Expr<'g>> =
         (0..open.nv()).map(|k| quantity_or_zero_if_released(k, Quantity::Acceleration(k))).collect();
     let mut forces_needed = rnea::inverse_dynamics(open, &joints, &v, Some(&a));
-    let inputs = forces::generalized_forces(open, &joints);
+    let inputs = forces::generalized_forces_of_inputs(open, &joints);
     let mut multipliers = constraints::multiplier_argument_symbols(open);
     multipliers.truncate(model.constraints.len());
     let held = constraints::constraint_forces(open, &multipliers);
@@ -96,12 +98,13 @@ fn forces_fixing_released_joints<'g>(
         *force -= inputs[k] + held[k];
     }
     let rates = if touched { open.contact_rates() } else { Vec::new() };
-    for (i, row) in constraints::jacobian_of(open, &rates).into_iter().enumerate() {
+    for (i, row) in constraints::jacobian_of_rates(open, &rates).into_iter().enumerate() {
         let force = Quantity::ContactForce(i).expr(g);
         forces_needed.iter_mut().zip(row).for_each(|(needed, entry)| *needed -= entry * force);
     }
-    let set_open_symbols_to_zero =
-        |e: &[Expr<'g>]| replace_all(e, &|s| is_released_coordinate(model, s).then(|| g.zero()));
+    let set_open_symbols_to_zero = |e: &[Expr<'g>]| {
+        substitute_symbols_in_all(e, &|s| is_released_coordinate(model, s).then(|| g.zero()))
+    };
     let mut needed = set_open_symbols_to_zero(&forces_needed[model.nv()..]);
     let rows = constraints::jacobian(open).split_off(multipliers.len());
     let rows: Matrix<'g> = rows.iter().map(|row| set_open_symbols_to_zero(&row[model.nv()..])).collect();

@@ -4,7 +4,7 @@
 
 use super::rnea::{link_motions, newton_euler_wrench};
 use crate::expr::{Expr, Sym3, Vec3};
-use crate::kinematics::{Joint, Spatial};
+use crate::kinematics::{Joint, SpatialVector};
 use crate::mechanism::{Inertia, LinkId, Model, Pose};
 
 /// Number of inertial parameters of a rigid body.
@@ -56,7 +56,7 @@ pub fn regressor_columns<'g>(
     let states = link_motions(model, joints, v, Some(a));
     let subspaces = partial_twists_of_links(model, joints);
     let mut columns = Vec::with_capacity(wanted.len());
-    let mut at: Option<(usize, Vec<(usize, Spatial<'g>)>)> = None;
+    let mut at: Option<(usize, Vec<(usize, SpatialVector<'g>)>)> = None;
     for &(index, parameter) in wanted {
         let site = &sites[index];
         let state = states[site.link.0].motion_of_fixed_frame(&site.pose);
@@ -78,8 +78,11 @@ pub fn regressor_columns<'g>(
 }
 
 /// Returns for each link its twist per unit of each velocity, in the link's axes.
-fn partial_twists_of_links<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Vec<(usize, Spatial<'g>)>> {
-    let mut all: Vec<Vec<(usize, Spatial<'g>)>> = Vec::with_capacity(joints.len());
+fn partial_twists_of_links<'g>(
+    model: &Model<'g>,
+    joints: &[Joint<'g>],
+) -> Vec<Vec<(usize, SpatialVector<'g>)>> {
+    let mut all: Vec<Vec<(usize, SpatialVector<'g>)>> = Vec::with_capacity(joints.len());
     for joint in joints {
         let carried = joint.parent.map_or(&[][..], |p| &all[p.0]);
         let mut own: Vec<_> = carried.iter().map(|(k, s)| (*k, joint.twist_to_child(s))).collect();
@@ -90,9 +93,9 @@ fn partial_twists_of_links<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<V
 }
 
 /// Transforms a twist of a link to a frame that is fixed in the link.
-fn twist_in_frame<'g>(pose: &Pose<'g>, twist: &Spatial<'g>) -> Spatial<'g> {
-    Spatial {
-        linear: pose.rotation.to_child(twist.linear + twist.angular.cross(pose.translation)),
-        angular: pose.rotation.to_child(twist.angular),
+fn twist_in_frame<'g>(pose: &Pose<'g>, twist: &SpatialVector<'g>) -> SpatialVector<'g> {
+    SpatialVector {
+        linear: pose.rotation.vector_in_child_axes(twist.linear + twist.angular.cross(pose.translation)),
+        angular: pose.rotation.vector_in_child_axes(twist.angular),
     }
 }

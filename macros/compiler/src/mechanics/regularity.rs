@@ -61,7 +61,7 @@ fn failing_pivots(model: &Model<'_>, joints: &[Joint<'_>], mass: &Matrix<'_>, se
         // still different from zero.
         let pivot = ValueWithRoundingError {
             value: m[k][k],
-            error: rounding_error_of_motion(&whole, &m, &eliminated, k),
+            error: rounding_error_of_pivot(&whole, &m, &eliminated, k),
         };
         if pivot.may_be_zero() {
             failing.push(k);
@@ -80,7 +80,7 @@ fn failing_pivots(model: &Model<'_>, joints: &[Joint<'_>], mass: &Matrix<'_>, se
 
 /// Returns `|z|ᵀ E |z|` of the motion `z` whose velocity `k` is 1, where `left` is the matrix `M` reduced by
 /// elimination.
-fn rounding_error_of_motion(
+fn rounding_error_of_pivot(
     whole: &[Vec<ValueWithRoundingError>],
     left: &[Vec<f64>],
     eliminated: &[usize],

@@ -5,7 +5,7 @@
 use super::shared_motions::SharedPartialVelocities;
 use super::{added_mass, inertances};
 use crate::expr::{Expr, Function, Mat3, Sym3, Vec3};
-use crate::kinematics::{Joint, Spatial};
+use crate::kinematics::{Joint, SpatialVector};
 use crate::mechanics::passive::passive_forces;
 use crate::mechanism::{Inertia, Model, Pose};
 
@@ -29,10 +29,10 @@ pub fn inverse_dynamics<'g>(
             tau[dof.index] += dof.subspace.dot(&wrench) * model.graph.num(dof.ratio);
         }
         if let Some(parent) = joint.parent {
-            wrenches[parent.0] = joint.add_wrench(&wrenches[parent.0], &wrench);
+            wrenches[parent.0] = joint.add_wrench_to_parent(&wrenches[parent.0], &wrench);
         }
     }
-    shared.add_forces(&wrenches, &mut tau);
+    shared.add_generalized_forces_of_wrenches(&wrenches, &mut tau);
     tau
 }
 
@@ -43,14 +43,14 @@ pub fn link_wrenches<'g>(
     joints: &[Joint<'g>],
     v: &[Expr<'g>],
     a: Option<&[Expr<'g>]>,
-) -> Vec<Spatial<'g>> {
+) -> Vec<SpatialVector<'g>> {
     let states = link_motions(model, joints, v, a);
     model.links.iter().zip(&states).map(|(link, state)| newton_euler_wrench(&link.inertia, state)).collect()
 }
 
 /// Motion of a link: angular velocity, its products, angular acceleration, `U`, acceleration of the origin.
 #[derive(Clone, Copy)]
-pub(super) struct State<'g> {
+pub(super) struct LinkMotionState<'g> {
     w: Vec3<'g>,
     /// Squares `wx²`, `wy²`, `wz²` of the angular velocity.
     squares: Vec3<'g>,
@@ -61,8 +61,8 @@ pub(super) struct State<'g> {
     a: Vec3<'g>,
 }
 
-impl<'g> State<'g> {
-    fn new(w: Vec3<'g>, dw: Vec3<'g>, a: Vec3<'g>) -> State<'g> {
+impl<'g> LinkMotionState<'g> {
+    fn new(w: Vec3<'g>, dw: Vec3<'g>, a: Vec3<'g>) -> LinkMotionState<'g> {
         let [x, y, z] = w.0;
         let (xx, yy, zz) = (x * x, y * y, z * z);
         let products = Vec3([y * z, z * x, x * y]);
@@ -72,13 +72,13 @@ impl<'g> State<'g> {
             [xy + dw[2], -(xx + zz), yz - dw[0]],
             [zx - dw[1], yz + dw[0], -(xx + yy)],
         ]);
-        State { w, squares: Vec3([xx, yy, zz]), products, dw, u, a }
+        LinkMotionState { w, squares: Vec3([xx, yy, zz]), products, dw, u, a }
     }
 
     /// Returns the motion of a frame that is fixed in the link.
-    pub(super) fn motion_of_fixed_frame(&self, pose: &Pose<'g>) -> State<'g> {
-        let vector_in_child = |v| pose.rotation.to_child(v);
-        State::new(
+    pub(super) fn motion_of_fixed_frame(&self, pose: &Pose<'g>) -> LinkMotionState<'g> {
+        let vector_in_child = |v| pose.rotation.vector_in_child_axes(v);
+        LinkMotionState::new(
             vector_in_child(self.w),
             vector_in_child(self.dw),
             vector_in_child(self.a + self.u * pose.translation),
@@ -93,17 +93,17 @@ pub(super) fn link_motions<'g>(
     joints: &[Joint<'g>],
     v: &[Expr<'g>],
     a: Option<&[Expr<'g>]>,
-) -> Vec<State<'g>> {
+) -> Vec<LinkMotionState<'g>> {
     let zero = Vec3::zero(model.graph);
-    let ground = State::new(zero, zero, -model.gravity);
-    let mut states: Vec<State<'g>> = Vec::with_capacity(joints.len());
+    let ground = LinkMotionState::new(zero, zero, -model.gravity);
+    let mut states: Vec<LinkMotionState<'g>> = Vec::with_capacity(joints.len());
     for joint in joints {
         let parent = joint.parent.map_or(ground, |p| states[p.0]);
         let rate = joint.twist_with_prescribed_motion(model, v);
-        let w_parent = joint.rotation.to_child(parent.w);
-        let mut dw = joint.rotation.to_child(parent.dw) + w_parent.cross(rate.angular);
+        let w_parent = joint.rotation.vector_in_child_axes(parent.w);
+        let mut dw = joint.rotation.vector_in_child_axes(parent.dw) + w_parent.cross(rate.angular);
         // Translation in the joint: Coriolis acceleration, and the rotation of a velocity given in link axes.
-        let mut origin = joint.rotation.to_child(parent.a + parent.u * joint.translation)
+        let mut origin = joint.rotation.vector_in_child_axes(parent.a + parent.u * joint.translation)
             + (w_parent + w_parent + rate.angular).cross(rate.linear);
         if let Some(drift) = &joint.drift {
             dw += drift.acceleration.angular;
@@ -114,13 +114,13 @@ pub(super) fn link_motions<'g>(
             dw += own.angular;
             origin += own.linear;
         }
-        states.push(State::new(w_parent + rate.angular, dw, origin));
+        states.push(LinkMotionState::new(w_parent + rate.angular, dw, origin));
     }
     states
 }
 
 /// Returns the wrench that produces a body's acceleration, about the link's origin.
-pub(super) fn newton_euler_wrench<'g>(inertia: &Inertia<'g>, s: &State<'g>) -> Spatial<'g> {
+pub(super) fn newton_euler_wrench<'g>(inertia: &Inertia<'g>, s: &LinkMotionState<'g>) -> SpatialVector<'g> {
     let (i, u) = (&inertia.tensor, &s.u.0);
     // Component k of I ẇ + w × I w, collected by the entries of I; (k, l, m) cyclic.
     let mut moment = inertia.moment.cross(s.a);
@@ -130,19 +130,19 @@ pub(super) fn newton_euler_wrench<'g>(inertia: &Inertia<'g>, s: &State<'g>) -> S
             - i.entry(k, l) * u[m][k]
             + i.entry(k, m) * u[l][k];
     }
-    Spatial { linear: s.a * inertia.mass + s.u * inertia.moment, angular: moment }
+    SpatialVector { linear: s.a * inertia.mass + s.u * inertia.moment, angular: moment }
 }
 
 /// Returns `I_kk ẇ_k + (I_mm − I_ll) w_l w_m`. In terms of the second moments `P` of mass this is
 /// `P_ll U_ml − P_mm U_lm`. The form with fewer terms is used.
-fn euler_moment_component<'g>(i: &Sym3<'g>, s: &State<'g>, k: usize) -> Expr<'g> {
+fn euler_moment_component<'g>(i: &Sym3<'g>, s: &LinkMotionState<'g>, k: usize) -> Expr<'g> {
     let (l, m) = ((k + 1) % 3, (k + 2) % 3);
     let [own, next, last] = [k, l, m].map(|k| i.diagonal[k]);
     if own.is_constant() && next.is_constant() && last.is_constant() {
         let size = [own, next, last].map(|x| x.apply_function(Function::Abs));
         let rounding = (size[0] + size[1] + size[2]) * (4.0 * f64::EPSILON);
         let second = [(own + last - next) * 0.5, (own + next - last) * 0.5];
-        let [p, q] = second.map(|x| if x.is_within_bound(rounding) { x.zero() } else { x });
+        let [p, q] = second.map(|x| if x.is_magnitude_within_bound(rounding) { x.zero() } else { x });
         let terms = usize::from(!own.is_zero()) + usize::from(next != last);
         if usize::from(!p.is_zero()) + usize::from(!q.is_zero()) < terms {
             return p * s.u.0[m][l] - q * s.u.0[l][m];

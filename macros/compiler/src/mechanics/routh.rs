@@ -7,7 +7,7 @@ use super::crba::Matrix;
 use super::{energy, ldl, momentum, rnea, velocity_symbols};
 use crate::expr::Expr;
 use crate::expr::eval::Tape;
-use crate::expr::replace::replace_all;
+use crate::expr::replace::substitute_symbols_in_all;
 use crate::expr::sample::sample_of_symbol;
 use crate::kinematics::{Joint, random_configuration};
 use crate::mechanism::{Chart, Model, Quantity};
@@ -33,7 +33,7 @@ pub struct Routh<'g> {
 /// Returns the cyclic coordinates: plain coordinates whose momenta are constant without inputs. A coordinate
 /// that is cyclic for special parameters only is not found.
 pub fn cyclic_coordinates<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<usize> {
-    let rates = Tape::new(&momentum::momentum_rate(model, joints, &velocity_symbols(model)));
+    let rates = Tape::new(&momentum::momentum_rate_without_inputs(model, joints, &velocity_symbols(model)));
     let mut plain: Vec<usize> = model
         .charts
         .iter()
@@ -93,8 +93,8 @@ pub fn derive<'g>(
 ) -> Routh<'g> {
     let g = model.graph;
     let own = matrix_block(mass, &cyclic, &cyclic);
-    let mut solve = |r: Vec<Expr<'g>>| Some(solve_linear_system(&own, r));
-    let found = solve_cyclic_velocities(model, joints, &cyclic, &mut solve);
+    let mut solve_cyclic_mass_block = |r: Vec<Expr<'g>>| Some(solve_linear_system(&own, r));
+    let found = solve_cyclic_velocities(model, joints, &cyclic, &mut solve_cyclic_mass_block);
     let RouthianAtMomenta { routhian, velocity } =
         found.unwrap_or_else(|| RouthianAtMomenta { routhian: g.zero(), velocity: Vec::new() });
     let all = velocities_with_cyclic_replaced(model, &cyclic, &velocity);
@@ -134,7 +134,7 @@ pub fn velocities_with_cyclic_replaced<'g>(
 
 /// Returns the expressions with the velocity symbols replaced by `v`.
 pub fn replace_velocities<'g>(e: &[Expr<'g>], v: &[Expr<'g>]) -> Vec<Expr<'g>> {
-    replace_all(e, &|s| match Quantity::from_symbol(s) {
+    substitute_symbols_in_all(e, &|s| match Quantity::from_symbol(s) {
         Quantity::Velocity(k) => Some(v[k]),
         _ => None,
     })

@@ -5,7 +5,7 @@
 
 use super::crba::{Matrix, momentum};
 use crate::expr::{Expr, Id, Sym3};
-use crate::kinematics::{Joint, Spatial};
+use crate::kinematics::{Joint, SpatialVector};
 use crate::mechanism::{Inertia, Model, Motion};
 use std::collections::BTreeMap;
 
@@ -23,7 +23,7 @@ pub struct SharedPartialVelocities<'g> {
 struct SharedPartialVelocity<'g> {
     index: usize,
     ratio: f64,
-    along: Spatial<'g>,
+    along: SpatialVector<'g>,
     /// Links in descending order, so that sums over the last links are partial sums of other sums.
     links: Vec<usize>,
 }
@@ -46,7 +46,7 @@ impl<'g> SharedPartialVelocities<'g> {
     fn collect_shared_partial_velocities(
         model: &Model<'g>,
         joints: &[Joint<'g>],
-        along: impl Fn(&Joint<'g>, usize) -> Option<Spatial<'g>>,
+        along: impl Fn(&Joint<'g>, usize) -> Option<SpatialVector<'g>>,
     ) -> SharedPartialVelocities<'g> {
         let mut motions: Vec<SharedPartialVelocity<'g>> = Vec::new();
         let mut known: BTreeMap<(usize, u64, Vec<Id>), usize> = BTreeMap::new();
@@ -87,7 +87,7 @@ impl<'g> SharedPartialVelocities<'g> {
     }
 
     /// Adds the generalized forces of the wrenches on these links along their shared partial velocities.
-    pub fn add_forces(&self, wrenches: &[Spatial<'g>], out: &mut [Expr<'g>]) {
+    pub fn add_generalized_forces_of_wrenches(&self, wrenches: &[SpatialVector<'g>], out: &mut [Expr<'g>]) {
         for motion in &self.motions {
             let all = motion.links.iter().map(|k| wrenches[*k]).reduce(|sum, wrench| sum.plus(&wrench));
             if let Some(all) = all {

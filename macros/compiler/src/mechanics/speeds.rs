@@ -11,7 +11,7 @@
 use super::crba::Matrix;
 use super::derivatives::symbolic;
 use super::{acceleration_symbols, constraints, generalized_force_symbols, velocity_symbols};
-use crate::expr::replace::replace_all;
+use crate::expr::replace::substitute_symbols_in_all;
 use crate::expr::{Expr, Mat3, Vec3};
 use crate::kinematics::time_derivative;
 use crate::mechanism::{Chart, DerivativeCache, InV, Model, Quantity, Speeds, SuppliedQuantity};
@@ -110,7 +110,7 @@ impl<'g> SpeedTransformation<'g> {
     /// Expresses joint velocities, accelerations and forces in generalized speeds: replaces the symbols in
     /// `e` by their values in terms of `u`, `u̇` and the forces of the speeds.
     pub fn express_in_speeds(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
-        replace_all(e, &|s| match Quantity::from_symbol(s) {
+        substitute_symbols_in_all(e, &|s| match Quantity::from_symbol(s) {
             Quantity::Velocity(k) => self.rates.get(k).copied(),
             Quantity::Acceleration(k) => self.accelerations.get(k).copied(),
             Quantity::Force(k) => self.efforts.get(k).copied(),
@@ -152,7 +152,7 @@ impl<'g> SpeedTransformation<'g> {
         let symbols: Vec<_> = (0..self.model.nv()).map(|k| argument(k).symbol()).collect();
         let own: Vec<Expr<'g>> = symbols.iter().map(|s| g.symbol(*s)).collect();
         let native = multiply_transposed(&self.speeds.velocity_to_speed_matrix, &own);
-        replace_all(&self.express_in_speeds(e), &|s| {
+        substitute_symbols_in_all(&self.express_in_speeds(e), &|s| {
             symbols.iter().position(|known| *known == s).and_then(|k| native.get(k)).copied()
         })
     }
@@ -160,7 +160,9 @@ impl<'g> SpeedTransformation<'g> {
     /// Sets the rates of the speeds in the expressions to zero.
     pub fn without_accelerations(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let zero = self.model.graph.zero();
-        replace_all(e, &|s| matches!(Quantity::from_symbol(s), Quantity::Acceleration(_)).then_some(zero))
+        substitute_symbols_in_all(e, &|s| {
+            matches!(Quantity::from_symbol(s), Quantity::Acceleration(_)).then_some(zero)
+        })
     }
 
     /// Transforms the results of a function in joint velocities to generalized speeds.
@@ -171,7 +173,7 @@ impl<'g> SpeedTransformation<'g> {
             ResultKind::Forces => self.transform_forces(e),
             ResultKind::MomentumRate => {
                 let (rate, momentum) = e.split_at(n.min(e.len()));
-                self.momentum_rate(rate, momentum)
+                self.transform_momentum_rate(rate, momentum)
             }
             ResultKind::Bias(rows) => {
                 let (bias, matrix) = e.split_at(rows.min(e.len()));
@@ -197,7 +199,7 @@ impl<'g> SpeedTransformation<'g> {
             }
             ResultKind::Metric => entries_by_column(&self.transform_mass_matrix(&square_from_columns(e, n))),
             ResultKind::InverseMetric => {
-                entries_by_column(&self.inverse_mass_matrix(&square_from_columns(e, n)))
+                entries_by_column(&self.transform_inverse_mass_matrix(&square_from_columns(e, n)))
             }
             ResultKind::Columns(rows) => self.multiply_by_velocity_transformation(e, rows),
             ResultKind::Responses(impulses) => {
@@ -219,7 +221,7 @@ impl<'g> SpeedTransformation<'g> {
     }
 
     /// Returns `Zᵀ X` for a matrix `X` whose rows correspond to displacements.
-    pub fn project(&self, m: &Matrix<'g>) -> Matrix<'g> {
+    pub fn project_rows_onto_speeds(&self, m: &Matrix<'g>) -> Matrix<'g> {
         transposed_matrix(
             &transposed_matrix(m)
                 .iter()
@@ -229,7 +231,7 @@ impl<'g> SpeedTransformation<'g> {
     }
 
     /// Returns the inverse mass matrix of the speeds, `Y M⁻¹ Yᵀ`.
-    pub fn inverse_mass_matrix(&self, inverse: &Matrix<'g>) -> Matrix<'g> {
+    pub fn transform_inverse_mass_matrix(&self, inverse: &Matrix<'g>) -> Matrix<'g> {
         let rows: Matrix<'g> = inverse
             .iter()
             .map(|row| matrix_times_vector(&self.speeds.velocity_to_speed_matrix, row))
@@ -266,7 +268,7 @@ impl<'g> SpeedTransformation<'g> {
 
     /// Returns `Zᵀ (C Z + M Ż)`, a Coriolis matrix in generalized speeds. `Ṁ_u − 2 C_u` is skew-symmetric if
     /// `Ṁ − 2 C` is.
-    pub fn coriolis_matrix(&self, coriolis: &Matrix<'g>, mass: &Matrix<'g>) -> Matrix<'g> {
+    pub fn transform_coriolis_matrix(&self, coriolis: &Matrix<'g>, mass: &Matrix<'g>) -> Matrix<'g> {
         let (z, rates) = (&self.speeds.rates, self.transformation_rates());
         let coriolis_row_in_speeds = |(c, m): (&Vec<Expr<'g>>, &Vec<Expr<'g>>)| -> Vec<Expr<'g>> {
             let own = multiply_transposed(z, &self.express_in_speeds(c));
@@ -278,13 +280,20 @@ impl<'g> SpeedTransformation<'g> {
 
     /// Returns the rate of generalized momenta from the rate and the momenta in joint velocities:
     /// `ṗ_u = Zᵀ ṗ + Żᵀ p`.
-    pub fn momentum_rate(&self, rate: &[Expr<'g>], momentum: &[Expr<'g>]) -> Vec<Expr<'g>> {
-        self.momentum_rate_in_speeds(&self.express_in_speeds(rate), &self.express_in_speeds(momentum))
+    pub fn transform_momentum_rate(&self, rate: &[Expr<'g>], momentum: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        self.transform_expressed_momentum_rate(
+            &self.express_in_speeds(rate),
+            &self.express_in_speeds(momentum),
+        )
     }
 
     /// Returns the rate of generalized momenta from the rate and the momenta of the joints that are already
     /// expressed in speeds.
-    pub fn momentum_rate_in_speeds(&self, rate: &[Expr<'g>], momentum: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    pub fn transform_expressed_momentum_rate(
+        &self,
+        rate: &[Expr<'g>],
+        momentum: &[Expr<'g>],
+    ) -> Vec<Expr<'g>> {
         let turned = multiply_transposed(&self.transformation_rates(), momentum);
         let own = multiply_transposed(&self.speeds.rates, rate);
         own.into_iter().zip(turned).map(|(own, turned)| own + turned).collect()
@@ -311,13 +320,13 @@ impl<'g> SpeedTransformation<'g> {
     }
 
     /// Returns `Z`, which gives the joint velocities as functions of the speeds.
-    pub fn velocity_transformation(&self) -> &Matrix<'g> {
+    pub fn speed_to_velocity_matrix(&self) -> &Matrix<'g> {
         &self.speeds.rates
     }
 
     /// Returns the derivatives of the joint velocities with respect to the configuration at constant speeds:
     /// a column for the tangent direction of each speed.
-    pub fn rate_changes(&self) -> Matrix<'g> {
+    pub fn velocity_configuration_derivatives(&self) -> Matrix<'g> {
         symbolic::configuration_derivatives(&self.model, &self.rates)
     }
 
@@ -325,7 +334,7 @@ impl<'g> SpeedTransformation<'g> {
     /// two neighbouring motions. With `δ = Z ξ` and `δ̇ = δv + K δ` in joint velocities,
     /// `T = Y (K Z + ∂(Z u)/∂q − Ż)`.
     pub fn variational_matrix(&self) -> Matrix<'g> {
-        let (changes, rates) = (self.rate_changes(), self.transformation_rates());
+        let (changes, rates) = (self.velocity_configuration_derivatives(), self.transformation_rates());
         let native: Matrix<'g> = displacement_commutators(&self.native)
             .iter()
             .map(|row| multiply_transposed(&self.speeds.rates, &self.express_in_speeds(row)))
@@ -343,7 +352,7 @@ impl<'g> SpeedTransformation<'g> {
 pub fn displacement_commutators<'g>(model: &Model<'g>) -> Matrix<'g> {
     let mut m = vec![vec![model.graph.zero(); model.nv()]; model.nv()];
     let v = velocity_symbols(model);
-    let mut block = |row: usize, column: usize, first: usize| {
+    let mut write_cross_product_block = |row: usize, column: usize, first: usize| {
         let minus = Mat3::skew(-Vec3([v[first], v[first + 1], v[first + 2]]));
         for i in 0..3 {
             m[row + i][column..column + 3].copy_from_slice(&minus.0[i]);
@@ -352,11 +361,11 @@ pub fn displacement_commutators<'g>(model: &Model<'g>) -> Matrix<'g> {
     for chart in &model.charts {
         match *chart {
             Chart::Plain(..) => {}
-            Chart::Ball(_, InV(b)) => block(b, b, b),
+            Chart::Ball(_, InV(b)) => write_cross_product_block(b, b, b),
             Chart::Free(_, InV(b)) => {
-                block(b, b, b + 3);
-                block(b + 3, b + 3, b + 3);
-                block(b, b + 3, b);
+                write_cross_product_block(b, b, b + 3);
+                write_cross_product_block(b + 3, b + 3, b + 3);
+                write_cross_product_block(b, b + 3, b);
             }
         }
     }

@@ -21,7 +21,7 @@ pub struct Constraint<'g> {
     /// terms in `v̇`.
     pub bias: Expr<'g>,
     /// Quantity measured by `residual`; without a residual, the quantity whose time derivative is `rate`.
-    pub measure: Measure,
+    pub measure: MeasuredQuantity,
     /// Forces and torques per unit of its multiplier in a joint that closes a loop.
     pub transmits: Vec<ReactionComponent<'g>>,
     /// Index of the group of constraints that are components of the same vector. The magnitude of a component
@@ -45,7 +45,7 @@ pub struct FrictionTerm<'g> {
 
 /// Quantity that a scalar constraint measures, which determines the unit of its residual.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Measure {
+pub enum MeasuredQuantity {
     /// The constraint residual is a length between two points or surfaces, m.
     Length,
     /// Sine of an angle, or difference of a cosine, which is zero at the required angle.
@@ -88,7 +88,7 @@ pub struct ConstraintPivot {
 
 /// Numbers of independent coordinates and velocities of a mechanism.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Freedom {
+pub struct DegreeOfFreedomCounts {
     /// Number of independent coordinates of the mechanism.
     pub coordinates: usize,
     /// Number of independent velocities of the mechanism.

@@ -10,9 +10,9 @@ pub struct Piece<'g> {
     /// Name of the declared object that the piece shows.
     pub name: String,
     /// Kind of the declared object that the piece shows.
-    pub role: Role,
+    pub role: ShownObjectKind,
     /// Geometric form of the piece.
-    pub kind: PieceKind,
+    pub kind: PieceShape,
     /// Indices of the frames in which its first and its second vector are fixed; `None` for the ground.
     pub frames: [Option<usize>; 2],
     /// Geometric values in the axes of these frames: expressions of the parameters only.
@@ -21,7 +21,7 @@ pub struct Piece<'g> {
 
 /// Kind of declared object that a piece shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Role {
+pub enum ShownObjectKind {
     /// A body, drawn as a solid with its mass properties.
     Body,
     /// Connection from one joint of a body to another.
@@ -43,7 +43,7 @@ pub enum Role {
 /// Geometric forms of pieces. The values of a piece are its position, followed by the values that are listed
 /// for its form.
 #[derive(Clone, Debug, PartialEq)]
-pub enum PieceKind {
+pub enum PieceShape {
     /// Straight rod, given by its axis and length.
     Rod,
     /// Ring or circle, given by axis and radius.
@@ -107,14 +107,14 @@ pub enum PieceKind {
 }
 
 /// A pose relative to a frame: the index of the frame (`None` for the ground), and the pose in it.
-pub type Anchor<'g> = (Option<usize>, Pose<'g>);
+pub type PoseInFrame<'g> = (Option<usize>, Pose<'g>);
 
 /// Returns a pose on a link, relative to a named frame of that link; `None` if the link has none.
 pub fn pose_relative_to_named_frame<'g>(
     frames: &[NamedFrame<'g>],
     link: Option<LinkId>,
     pose: &Pose<'g>,
-) -> Option<Anchor<'g>> {
+) -> Option<PoseInFrame<'g>> {
     if link.is_none() {
         return Some((None, pose.clone()));
     }

@@ -36,7 +36,7 @@ pub struct CoulombFriction<'g> {
 
 /// Effect of an entry of `u` on the mechanism.
 #[derive(Clone, Debug)]
-pub enum Input<'g> {
+pub enum InputEffect<'g> {
     /// Input without an effect of its own: expressions contain it.
     Named,
     /// Input that is a force or torque on a coordinate.

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 
 /// Derivatives with respect to the velocities that an expression depends on, each with the velocity's index.
-pub type Gradient<'g> = Vec<(usize, Expr<'g>)>;
+pub type VelocityGradient<'g> = Vec<(usize, Expr<'g>)>;
 
 /// Cached derivatives of the expressions of a model, shared by copies of the model.
 #[derive(Clone, Debug, Default)]
@@ -31,8 +31,8 @@ impl DerivativeCache {
         &self,
         charts: &[Chart],
         energy: Expr<'g>,
-        find: impl FnOnce() -> Gradient<'g>,
-    ) -> Gradient<'g> {
+        find: impl FnOnce() -> VelocityGradient<'g>,
+    ) -> VelocityGradient<'g> {
         let mut found = self.0.borrow_mut();
         if found.charts != charts {
             found.of_energies.clear();
@@ -46,8 +46,8 @@ impl DerivativeCache {
     pub fn cached_velocity_derivatives<'g>(
         &self,
         e: Expr<'g>,
-        find: impl FnOnce() -> Gradient<'g>,
-    ) -> Gradient<'g> {
+        find: impl FnOnce() -> VelocityGradient<'g>,
+    ) -> VelocityGradient<'g> {
         cached_or_computed(&mut self.0.borrow_mut().by_velocities, e, find)
     }
 }
@@ -55,8 +55,8 @@ impl DerivativeCache {
 fn cached_or_computed<'g>(
     known: &mut GradientTable,
     e: Expr<'g>,
-    find: impl FnOnce() -> Gradient<'g>,
-) -> Gradient<'g> {
+    find: impl FnOnce() -> VelocityGradient<'g>,
+) -> VelocityGradient<'g> {
     if let Some(list) = known.get(&e.id()) {
         return list.iter().map(|(k, d)| (*k, e.graph().expr(*d))).collect();
     }

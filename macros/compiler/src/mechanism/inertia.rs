@@ -40,7 +40,7 @@ impl<'g> Inertia<'g> {
         rotation: &Rotation<'g>,
         p: Vec3<'g>,
     ) -> Inertia<'g> {
-        let h = rotation.to_parent(other.moment);
+        let h = rotation.vector_in_parent_axes(other.moment);
         let s = h + p * (other.mass * 0.5);
         let twice: [Expr<'g>; 3] = std::array::from_fn(|k| (p[k] * 2.0) * s[k]);
         let shift = Sym3 {
@@ -50,7 +50,7 @@ impl<'g> Inertia<'g> {
         Inertia {
             mass: self.mass + other.mass,
             moment: self.moment + (h + p * other.mass),
-            tensor: self.tensor + (rotation.sym_to_parent(other.tensor) + shift),
+            tensor: self.tensor + (rotation.symmetric_tensor_in_parent_axes(other.tensor) + shift),
         }
     }
 }

@@ -5,7 +5,7 @@ use crate::expr::Expr;
 
 /// Limits of a coordinate, its velocity and its generalized force; `None` for each missing bound.
 #[derive(Clone, Copy, Debug)]
-pub struct Limit<'g> {
+pub struct CoordinateLimits<'g> {
     /// Index in `q` of the limited coordinate.
     pub q: InQ,
     /// Index in `v` of the limited coordinate's velocity.
@@ -20,7 +20,7 @@ pub struct Limit<'g> {
     pub effort: Option<Expr<'g>>,
 }
 
-impl<'g> Limit<'g> {
+impl<'g> CoordinateLimits<'g> {
     /// Returns the limits of the coordinate, its velocity and its force: lower, upper, velocity, force.
     pub fn bounds(&self) -> [Option<Expr<'g>>; 4] {
         [self.lower, self.upper, self.speed, self.effort]

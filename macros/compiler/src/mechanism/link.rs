@@ -13,7 +13,7 @@ pub struct LinkId(pub usize);
 
 /// The configuration space, from which time derivatives of expressions of the coordinates are computed.
 #[derive(Clone, Copy)]
-pub struct Space<'a, 'g> {
+pub struct ConfigurationSpace<'a, 'g> {
     /// Graph that owns the expressions of the model.
     pub graph: &'g Graph,
     /// Coordinate charts of the factors of the configuration space.

@@ -24,21 +24,22 @@ mod speeds;
 mod units;
 
 pub use constraint::{
-    ClosedFormJoint, Constraint, ConstraintPivot, Freedom, FrictionTerm, Measure, ReactionComponent,
+    ClosedFormJoint, Constraint, ConstraintPivot, DegreeOfFreedomCounts, FrictionTerm, MeasuredQuantity,
+    ReactionComponent,
 };
 pub use contact::Contact;
-pub use drawing::{Piece, PieceKind, Role};
+pub use drawing::{Piece, PieceShape, ShownObjectKind};
 pub use element::{
-    AccelerationForce, CoulombFriction, Dashpot, Inertance, Input, Load, Spring, SumOfLinkVectors,
+    AccelerationForce, CoulombFriction, Dashpot, Inertance, InputEffect, Load, Spring, SumOfLinkVectors,
 };
 pub use equilibrium::{DRY_FRICTION, Equilibrium, FirstOrderStateAtRest};
-pub use gradients::{DerivativeCache, Gradient};
+pub use gradients::{DerivativeCache, VelocityGradient};
 pub use index::{InQ, InV};
 pub use inertia::Inertia;
-pub use limit::Limit;
-pub use link::{Link, LinkId, NamedFrame, Space};
+pub use limit::CoordinateLimits;
+pub use link::{ConfigurationSpace, Link, LinkId, NamedFrame};
 pub use link_block::{BLOCK_LENGTH, LINK_QUANTITIES, LinkBlock, MASS_PROPERTIES};
-pub use model::{Diagram, Model, Origin, OutputExpression, ReleasedMechanism, UsedQuantities};
+pub use model::{ActionOrigin, FreeBodyDiagram, Model, OutputExpression, ReleasedMechanism, UsedQuantities};
 pub use motion::{Chart, Coordinate, Motion};
 pub use passive::PassiveForces;
 pub use polytope::{

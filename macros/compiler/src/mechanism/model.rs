@@ -1,14 +1,14 @@
 //! Model of a whole mechanism, which all later stages read.
 
-use super::constraint::{ClosedFormJoint, Constraint, ConstraintPivot, Freedom};
+use super::constraint::{ClosedFormJoint, Constraint, ConstraintPivot, DegreeOfFreedomCounts};
 use super::contact::Contact;
 use super::drawing::Piece;
-use super::element::{AccelerationForce, CoulombFriction, Dashpot, Inertance, Input, Load, Spring};
+use super::element::{AccelerationForce, CoulombFriction, Dashpot, Inertance, InputEffect, Load, Spring};
 use super::equilibrium::Equilibrium;
 use super::gradients::DerivativeCache;
 use super::inertia::Inertia;
-use super::limit::Limit;
-use super::link::{Link, NamedFrame, Space};
+use super::limit::CoordinateLimits;
+use super::link::{ConfigurationSpace, Link, NamedFrame};
 use super::motion::Chart;
 use super::passive::PassiveForces;
 use super::polytope::PolytopePair;
@@ -60,9 +60,9 @@ pub struct Model<'g> {
     /// model contain joint velocities.
     pub speeds: Option<Rc<Speeds<'g>>>,
     /// Name and effect of every entry of `u`.
-    pub inputs: Vec<(String, Input<'g>)>,
+    pub inputs: Vec<(String, InputEffect<'g>)>,
     /// Limits, one for each entry of `v` that has any.
-    pub limits: Vec<Limit<'g>>,
+    pub limits: Vec<CoordinateLimits<'g>>,
     /// Equilibria about which linearised equations are printed.
     pub equilibria: Vec<Equilibrium<'g>>,
     /// Unilateral contacts, including stops.
@@ -106,7 +106,7 @@ pub struct Model<'g> {
     /// Joints for which loops are solved in closed form, two for each loop.
     pub solved: Vec<ClosedFormJoint<'g>>,
     /// Numbers of independent coordinates and velocities of the mechanism.
-    pub freedom: Freedom,
+    pub freedom: DegreeOfFreedomCounts,
     /// Outputs of the mechanism.
     pub outputs: Vec<OutputExpression<'g>>,
     /// Copy of the mechanism in which each joint whose reaction is an output has six degrees of freedom;
@@ -134,17 +134,17 @@ pub struct OutputExpression<'g> {
     /// Components of the output: one, three or nine; nine for each action of a free-body diagram.
     pub values: Vec<Expr<'g>>,
     /// Free-body diagram that the output values represent, if any.
-    pub diagram: Option<Diagram>,
+    pub diagram: Option<FreeBodyDiagram>,
 }
 
 /// A free-body diagram: the actions on a body. The values of each action are the point, the force and the
 /// torque.
 #[derive(Clone, Debug)]
-pub struct Diagram {
+pub struct FreeBodyDiagram {
     /// Name of the body to which the free-body diagram belongs.
     pub body: String,
     /// Name and kind of each action on the body in the diagram.
-    pub actions: Vec<(String, Origin)>,
+    pub actions: Vec<(String, ActionOrigin)>,
     /// Indices of the joints to be released: joints, then positions of bodies and particles, in the order of
     /// the declaration.
     pub released: Vec<usize>,
@@ -152,7 +152,7 @@ pub struct Diagram {
 
 /// Kind of an action on a body in a free-body diagram.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Origin {
+pub enum ActionOrigin {
     /// The action is the weight of the body in uniform gravity.
     Gravity,
     /// The action is the force and torque of a force element.
@@ -180,8 +180,8 @@ pub struct UsedQuantities {
 
 impl<'g> Model<'g> {
     /// Returns the configuration space of the mechanism.
-    pub fn configuration_space(&self) -> Space<'_, 'g> {
-        Space { graph: self.graph, charts: &self.charts, speeds: self.speeds.as_deref() }
+    pub fn configuration_space(&self) -> ConfigurationSpace<'_, 'g> {
+        ConfigurationSpace { graph: self.graph, charts: &self.charts, speeds: self.speeds.as_deref() }
     }
 
     /// Returns the configuration with zero coordinates and identity quaternions.

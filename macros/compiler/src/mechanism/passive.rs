@@ -21,28 +21,30 @@ impl<'g> PassiveForces<'g> {
     /// for each force, or no rows to leave out derivatives.
     pub fn new(forces: Vec<Expr<'g>>, by_q: &[Vec<Expr<'g>>], by_v: &[Vec<Expr<'g>>]) -> PassiveForces<'g> {
         let mut derivatives = Vec::new();
-        let mut name = |e: Expr<'g>| match e.constant_value() {
+        let mut replace_derivative_by_symbol = |e: Expr<'g>| match e.constant_value() {
             Some(_) => e,
             None => {
                 derivatives.push(e);
                 Quantity::PassiveDerivative(derivatives.len() - 1).expr(e.graph())
             }
         };
-        let mut columns = |rows: &[Vec<Expr<'g>>]| {
+        let mut columns_with_derivative_symbols = |rows: &[Vec<Expr<'g>>]| {
             let count = rows.first().map_or(0, Vec::len);
-            (0..count).map(|k| rows.iter().map(|row| name(row[k])).collect()).collect()
+            (0..count)
+                .map(|k| rows.iter().map(|row| replace_derivative_by_symbol(row[k])).collect())
+                .collect()
         };
-        let given = [columns(by_q), columns(by_v)];
+        let given = [columns_with_derivative_symbols(by_q), columns_with_derivative_symbols(by_v)];
         PassiveForces { forces, derivatives, given }
     }
 
     /// Returns the forces as symbols for the other functions; constant forces as constants.
     pub fn forces_as_arguments(&self) -> Vec<Expr<'g>> {
-        let constant_or_passive_force = |(k, e): (usize, &Expr<'g>)| match e.constant_value() {
+        let constant_or_force_symbol = |(k, e): (usize, &Expr<'g>)| match e.constant_value() {
             Some(_) => *e,
             None => Quantity::PassiveForce(k).expr(e.graph()),
         };
-        self.forces.iter().enumerate().map(constant_or_passive_force).collect()
+        self.forces.iter().enumerate().map(constant_or_force_symbol).collect()
     }
 
     /// Returns the derivatives of the force symbols with respect to the configuration along the direction of

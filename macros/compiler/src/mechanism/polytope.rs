@@ -63,7 +63,7 @@ impl Polytope {
     }
 
     /// Returns half the sum of the lengths along the axes of the body, m.
-    pub fn size(&self) -> f64 {
+    pub fn half_sum_of_lengths(&self) -> f64 {
         let lengths = (0..3).map(|axis| self.extent_along_axis(axis)).map(|[low, high]| (high - low) / 2.0);
         lengths.sum::<f64>() + 2.0 * self.radius
     }
@@ -74,13 +74,13 @@ impl Polytope {
     }
 
     /// Returns the largest distance of a vertex from the origin, m.
-    pub fn reach(&self) -> f64 {
+    pub fn largest_distance_from_origin(&self) -> f64 {
         let norm = |vertex: &[f64; 3]| vertex.iter().map(|x| x * x).sum::<f64>().sqrt();
         self.vertices.iter().map(norm).fold(0.0, f64::max).hypot(self.radius)
     }
 
     /// Returns the largest number of vertices of a face; two for a line segment.
-    pub fn most_corners(&self) -> usize {
+    pub fn most_corners_per_face(&self) -> usize {
         self.faces.iter().map(|face| face.corners.len()).fold(2, usize::max)
     }
 }

@@ -28,12 +28,12 @@ impl<'g> Pose<'g> {
     /// Returns the pose of the parent frame relative to the child frame.
     pub fn inverse(&self) -> Pose<'g> {
         let rotation = self.rotation.inverse();
-        Pose { translation: -rotation.to_parent(self.translation), rotation }
+        Pose { translation: -rotation.vector_in_parent_axes(self.translation), rotation }
     }
 
     /// Returns the position of a point of the child frame, from the parent's origin in parent axes.
     pub fn transform_point(&self, p: Vec3<'g>) -> Vec3<'g> {
-        self.translation + self.rotation.to_parent(p)
+        self.translation + self.rotation.vector_in_parent_axes(p)
     }
 
     /// Returns all expressions that rotation and translation consist of.

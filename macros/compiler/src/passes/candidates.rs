@@ -2,14 +2,14 @@
 
 use super::motions::{FrameFreedom, freedom_of_link_frame};
 use super::number::{
-    IDENTITY, Mass, NumericFrame, Vector, axis_rotation, column, cross, dot, matrix_times_vector,
-    multiply_transposed, norm, round_noise_to_zero, transpose, unit_axis,
+    IDENTITY, NumericFrame, NumericMassProperties, Vector, axis_rotation, column, cross, dot,
+    matrix_times_vector, multiply_transposed, norm, round_noise_to_zero, transpose, unit_axis,
 };
 use crate::mechanism::{Link, Motion};
 use std::f64::consts::FRAC_PI_2;
 
 /// Data that the choice of a link's frame depends on.
-pub struct Site {
+pub struct FrameChoiceData {
     /// Index of the parent link; `None` for the ground.
     pub parent: Option<usize>,
     /// Frame of the joint on the parent link, if its numbers are constant.
@@ -17,22 +17,23 @@ pub struct Site {
     /// Freedom to choose the frame of the link.
     pub freedom: FrameFreedom,
     /// Mass properties of the link, if they are constant numbers.
-    pub mass: Option<Mass>,
+    pub mass: Option<NumericMassProperties>,
     /// Maximum distance by which the link's origin may be moved along its axis: a few times the link's size.
     /// The rounding error of moments of inertia about the origin grows as the square of this
     /// distance.
     pub reach: f64,
 }
 
-impl Site {
+impl FrameChoiceData {
     /// Returns the site of a link of a given size. With `free_parameters`, its mass properties need not be
     /// numeric.
-    pub fn from_link(link: &Link<'_>, size: f64, free_parameters: bool) -> Site {
-        let (place, mass) = (NumericFrame::from_pose(&link.placement), Mass::from_inertia(&link.inertia));
+    pub fn from_link(link: &Link<'_>, size: f64, free_parameters: bool) -> FrameChoiceData {
+        let (place, mass) =
+            (NumericFrame::from_pose(&link.placement), NumericMassProperties::from_inertia(&link.inertia));
         let free = freedom_of_link_frame(&link.motion);
         let numeric = place.is_some() && (mass.is_some() || free_parameters);
         let place = place.filter(|_| !matches!(link.motion, Motion::Placed));
-        Site {
+        FrameChoiceData {
             parent: link.parent.map(|p| p.0),
             place,
             freedom: free.filter(|_| numeric).unwrap_or(FrameFreedom::None),
@@ -66,7 +67,11 @@ const NEARLY_PARALLEL: f64 = 1e-3;
 
 /// Returns candidate frames of link `k`, relative to its present frame, which comes first. `chosen` holds the
 /// candidates of later links.
-pub fn candidate_frames(sites: &[Site], k: usize, chosen: &[Vec<NumericFrame>]) -> Vec<NumericFrame> {
+pub fn candidate_frames(
+    sites: &[FrameChoiceData],
+    k: usize,
+    chosen: &[Vec<NumericFrame>],
+) -> Vec<NumericFrame> {
     match sites[k].freedom {
         FrameFreedom::None => vec![NumericFrame::IDENTITY],
         FrameFreedom::Turn { k: a, .. } => {
@@ -86,7 +91,7 @@ pub fn candidate_frames(sites: &[Site], k: usize, chosen: &[Vec<NumericFrame>]) 
     }
 }
 
-fn indices_of_child_sites(sites: &[Site], k: usize) -> impl Iterator<Item = usize> {
+fn indices_of_child_links(sites: &[FrameChoiceData], k: usize) -> impl Iterator<Item = usize> {
     (k + 1..sites.len()).filter(move |c| sites[*c].parent == Some(k))
 }
 
@@ -131,14 +136,14 @@ fn push_if_distinct(list: &mut Vec<f64>, x: f64, scale: f64) {
 }
 
 fn frame_choices_of_revolute_joint(
-    sites: &[Site],
+    sites: &[FrameChoiceData],
     k: usize,
     a: usize,
     chosen: &[Vec<NumericFrame>],
 ) -> CandidateAnglesAndShifts {
     let mut list =
         CandidateAnglesAndShifts { a, angles: vec![0.0], shifts: vec![0.0], reach: sites[k].reach };
-    for c in indices_of_child_sites(sites, k) {
+    for c in indices_of_child_links(sites, k) {
         if let Some(place) = &sites[c].place {
             add_alignment_with_child(&mut list, &sites[c], place, &chosen[c]);
         }
@@ -170,7 +175,7 @@ fn frame_choices_of_revolute_joint(
 /// Adds the shift to the common normal with a child's axis, and the angle that points along it.
 fn add_alignment_with_child(
     list: &mut CandidateAnglesAndShifts,
-    child: &Site,
+    child: &FrameChoiceData,
     place: &NumericFrame,
     chosen: &[NumericFrame],
 ) {
@@ -205,14 +210,14 @@ fn add_alignment_with_child(
 
 /// Returns candidate frames of a sliding link: oriented like itself, its parent or a child, and at their
 /// positions.
-fn candidates_of_sliding_link(sites: &[Site], k: usize, slide: Vector) -> Vec<NumericFrame> {
+fn candidates_of_sliding_link(sites: &[FrameChoiceData], k: usize, slide: Vector) -> Vec<NumericFrame> {
     let mut rotations = vec![IDENTITY];
     let mut points = vec![[0.0; 3]];
     if let Some(place) = &sites[k].place {
         rotations.push(transpose(&place.rotation));
         points.push(multiply_transposed(&place.rotation, place.translation).map(|c| -c));
     }
-    for place in indices_of_child_sites(sites, k).filter_map(|c| sites[c].place.as_ref()) {
+    for place in indices_of_child_links(sites, k).filter_map(|c| sites[c].place.as_ref()) {
         rotations.push(place.rotation);
         points.push(place.translation);
     }

@@ -1,7 +1,7 @@
 //! Estimated costs of placements and mass properties: operations of inverse dynamics, mass matrix and forward
 //! dynamics together, for a link in the middle of an arm.
 
-use super::candidates::Site;
+use super::candidates::FrameChoiceData;
 use super::motions::FrameFreedom;
 use super::number::{
     Matrix, NumericFrame, Vector, clean_rotation, column, cross, dot, matrix_times_vector,
@@ -25,14 +25,14 @@ const GROUND: f64 = 0.02;
 /// Returns the cheapest placement of a link's new frame `frame` in its parent's frame `parent`: cost,
 /// placement, and the angle to be added to the joint. Returns `None` if the placement is not numeric.
 pub fn cheapest_joint_placement(
-    site: &Site,
+    site: &FrameChoiceData,
     parent: &NumericFrame,
     frame: &NumericFrame,
 ) -> Option<(f64, NumericFrame, f64)> {
     let plain = site.place.as_ref()?.placement_between_frames(parent, frame);
     let mut best = (placement_cost(site, &plain, frame), plain, 0.0);
     if let FrameFreedom::Turn { k, offset: true } = site.freedom {
-        for (rotation, angle) in sparse_alignments(&plain.rotation, k) {
+        for (rotation, angle) in sparse_rotations_with_angles(&plain.rotation, k) {
             let place = NumericFrame { rotation, ..plain };
             let angle = round_noise_to_zero(angle, 1.0);
             let cost = placement_cost(site, &place, frame) + if angle == 0.0 { 0.0 } else { OFFSET };
@@ -44,7 +44,7 @@ pub fn cheapest_joint_placement(
     Some(best)
 }
 
-fn placement_cost(site: &Site, place: &NumericFrame, frame: &NumericFrame) -> f64 {
+fn placement_cost(site: &FrameChoiceData, place: &NumericFrame, frame: &NumericFrame) -> f64 {
     let mut lengths = place.translation;
     if let FrameFreedom::Slide { along } = site.freedom {
         // The displacement has all components of the sliding axis.
@@ -52,7 +52,7 @@ fn placement_cost(site: &Site, place: &NumericFrame, frame: &NumericFrame) -> f6
         let way = matrix_times_vector(&place.rotation, turned);
         lengths = std::array::from_fn(|k| lengths[k].abs() + way[k].abs());
     }
-    let cost = TURN * rotation_count(&place.rotation) + LENGTH * nonzero_component_count(lengths);
+    let cost = TURN * coordinate_rotation_count(&place.rotation) + LENGTH * nonzero_component_count(lengths);
     if site.parent.is_none() { GROUND * cost } else { cost }
 }
 
@@ -61,7 +61,7 @@ fn nonzero_component_count(v: Vector) -> f64 {
 }
 
 /// Returns the number of rotations about coordinate axes in a rotation; right angles do not count.
-fn rotation_count(m: &Matrix) -> f64 {
+fn coordinate_rotation_count(m: &Matrix) -> f64 {
     match m.iter().flatten().filter(|e| **e == 0.0).count() {
         6 => 0.0,
         4 => 1.0,
@@ -72,7 +72,7 @@ fn rotation_count(m: &Matrix) -> f64 {
 
 /// Returns sparse rotations `m R` with their angles, where `R` rotates by the angle about coordinate axis
 /// `k`.
-fn sparse_alignments(m: &Matrix, k: usize) -> Vec<(Matrix, f64)> {
+fn sparse_rotations_with_angles(m: &Matrix, k: usize) -> Vec<(Matrix, f64)> {
     let (i, j) = ((k + 1) % 3, (k + 2) % 3);
     let u = column(m, k);
     let mut found = Vec::new();
@@ -101,7 +101,7 @@ fn sparse_alignments(m: &Matrix, k: usize) -> Vec<(Matrix, f64)> {
 }
 
 /// Returns the cost of the mass properties resolved in a frame.
-pub fn cost_of_mass_properties(site: &Site, frame: &NumericFrame) -> f64 {
+pub fn cost_of_mass_properties(site: &FrameChoiceData, frame: &NumericFrame) -> f64 {
     let Some(mass) = &site.mass else { return 0.0 };
     let seen = mass.mass_properties_in_frame(frame);
     let along = match site.freedom {

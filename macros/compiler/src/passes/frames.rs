@@ -6,11 +6,11 @@
 //! The cost of a placement depends on the frames of both links, so the candidates of all links are compared
 //! together by dynamic programming from the leaves to the root (Bellman 1957).
 
-use super::candidates::{Site, candidate_frames};
+use super::candidates::{FrameChoiceData, candidate_frames};
 use super::cost;
 use super::motions::{FrameFreedom, rewrite_motion_in_frame};
-use super::number::{Mass, NumericFrame, norm};
-use crate::mechanism::{Inertia, Input, Link, Model, Pose, SumOfLinkVectors};
+use super::number::{NumericFrame, NumericMassProperties, norm};
+use crate::mechanism::{Inertia, InputEffect, Link, Model, Pose, SumOfLinkVectors};
 
 /// New frame that was chosen for one link.
 #[derive(Clone, Copy)]
@@ -47,17 +47,23 @@ pub fn characteristic_link_sizes(model: &Model<'_>) -> Vec<f64> {
     let link_length_scale = |(k, link): (usize, &Link<'_>)| {
         let children =
             (k + 1..model.links.len()).filter(|c| model.links[*c].parent.is_some_and(|p| p.0 == k));
-        let masses = Mass::from_inertia(&link.inertia).map_or(0.0, |mass| mass.root_mean_square_radius());
+        let masses = NumericMassProperties::from_inertia(&link.inertia)
+            .map_or(0.0, |mass| mass.root_mean_square_radius());
         children.map(distance_of_link_from_origin).fold(distance_of_link_from_origin(k) + masses, f64::max)
     };
     model.links.iter().enumerate().map(link_length_scale).collect()
 }
 
 /// Returns the data that the choice of frames depends on.
-fn frame_choice_data_of_links(model: &Model<'_>, sizes: &[f64], free_parameters: bool) -> Vec<Site> {
+fn frame_choice_data_of_links(
+    model: &Model<'_>,
+    sizes: &[f64],
+    free_parameters: bool,
+) -> Vec<FrameChoiceData> {
     let frame_choice_data_of_link =
-        |(link, size): (&Link<'_>, &f64)| Site::from_link(link, *size, free_parameters);
-    let mut sites: Vec<Site> = model.links.iter().zip(sizes).map(frame_choice_data_of_link).collect();
+        |(link, size): (&Link<'_>, &f64)| FrameChoiceData::from_link(link, *size, free_parameters);
+    let mut sites: Vec<FrameChoiceData> =
+        model.links.iter().zip(sizes).map(frame_choice_data_of_link).collect();
     for k in 0..sites.len() {
         // A placement that is not numeric fixes the frames on both sides.
         if let (None, Some(p)) = (&sites[k].place, sites[k].parent) {
@@ -69,7 +75,7 @@ fn frame_choice_data_of_links(model: &Model<'_>, sizes: &[f64], free_parameters:
 
 /// Returns the cheapest frame of every link relative to its present frame, or `None` if no frame can be
 /// chosen.
-fn choose_frames(sites: &[Site]) -> Option<Vec<NumericFrame>> {
+fn choose_frames(sites: &[FrameChoiceData]) -> Option<Vec<NumericFrame>> {
     if sites.iter().all(|site| matches!(site.freedom, FrameFreedom::None)) {
         return None;
     }
@@ -95,7 +101,7 @@ fn choose_frames(sites: &[Site]) -> Option<Vec<NumericFrame>> {
 /// Returns the index of the best candidate of a link for a parent's frame, and its cost including all
 /// descendants.
 fn best_frame_candidate(
-    site: &Site,
+    site: &FrameChoiceData,
     parent: &NumericFrame,
     choices: &[NumericFrame],
     costs: &[f64],
@@ -111,7 +117,11 @@ fn best_frame_candidate(
     best
 }
 
-fn apply_frame_choice<'g>(model: &mut Model<'g>, sites: &[Site], steps: &[Option<ChosenLinkFrame>]) {
+fn apply_frame_choice<'g>(
+    model: &mut Model<'g>,
+    sites: &[FrameChoiceData],
+    steps: &[Option<ChosenLinkFrame>],
+) {
     let g = model.graph;
     for (link, (site, step)) in model.links.iter_mut().zip(sites.iter().zip(steps)) {
         let Some(step) = step else { continue };
@@ -190,12 +200,12 @@ pub fn move_contents_to_new_frames<'g>(model: &mut Model<'g>, back: &[Pose<'g>])
     }
     for (_, input) in inputs {
         match input {
-            Input::Named | Input::Coordinate(_) | Input::Sum(..) => {}
-            Input::Force { link, point, along } => {
+            InputEffect::Named | InputEffect::Coordinate(_) | InputEffect::Sum(..) => {}
+            InputEffect::Force { link, point, along } => {
                 *point = back[link.0].transform_point(*point);
                 rotate_direction(along, back);
             }
-            Input::Torque { about, .. } => rotate_direction(about, back),
+            InputEffect::Torque { about, .. } => rotate_direction(about, back),
         }
     }
 }
@@ -203,7 +213,7 @@ pub fn move_contents_to_new_frames<'g>(model: &mut Model<'g>, back: &[Pose<'g>])
 fn rotate_direction<'g>(direction: &mut SumOfLinkVectors<'g>, back: &[Pose<'g>]) {
     for (link, v) in direction {
         if let Some(link) = link {
-            *v = back[link.0].rotation.to_parent(*v);
+            *v = back[link.0].rotation.vector_in_parent_axes(*v);
         }
     }
 }

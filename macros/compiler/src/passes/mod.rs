@@ -87,10 +87,16 @@ pub fn model_variants<'g>(model: &Model<'g>, passes: Passes) -> Vec<Variant<'g>>
         }
         let mut model = start.clone();
         move_inertias_to_parents(&mut model, RegroupOptions { gauge, to_children, symbolic });
-        add(&mut variants, Variant { model, joints: joints.clone(), for_inverse_dynamics: to_children });
+        add_distinct_variant(
+            &mut variants,
+            Variant { model, joints: joints.clone(), for_inverse_dynamics: to_children },
+        );
     }
     if !passes.frames {
-        add(&mut variants, Variant { model: model.clone(), joints, for_inverse_dynamics: false });
+        add_distinct_variant(
+            &mut variants,
+            Variant { model: model.clone(), joints, for_inverse_dynamics: false },
+        );
     }
     variants
 }
@@ -111,7 +117,7 @@ const DISTRIBUTIONS: [(VanishingMomentConvention, bool, bool, bool); 6] = [
 ];
 
 /// Adds a variant to the list unless an equal one is in it.
-fn add<'g>(variants: &mut Vec<Variant<'g>>, variant: Variant<'g>) {
+fn add_distinct_variant<'g>(variants: &mut Vec<Variant<'g>>, variant: Variant<'g>) {
     let inertias_of_links = |f: &Variant<'g>| f.model.links.iter().map(|l| l.inertia).collect::<Vec<_>>();
     if !variants.iter().any(|known| inertias_of_links(known) == inertias_of_links(&variant)) {
         variants.push(variant);

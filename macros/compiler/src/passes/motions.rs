@@ -27,8 +27,12 @@ pub enum FrameFreedom {
 /// Returns the freedom to choose the frame of a link with this motion, or `None` if it is fixed.
 pub fn freedom_of_link_frame(motion: &Motion<'_>) -> Option<FrameFreedom> {
     match motion {
-        Motion::Turn { axis, .. } => coordinate_axis(*axis).map(|k| FrameFreedom::Turn { k, offset: true }),
-        Motion::Helix { axis, .. } => coordinate_axis(*axis).map(|k| FrameFreedom::Turn { k, offset: false }),
+        Motion::Turn { axis, .. } => {
+            index_of_parallel_axis(*axis).map(|k| FrameFreedom::Turn { k, offset: true })
+        }
+        Motion::Helix { axis, .. } => {
+            index_of_parallel_axis(*axis).map(|k| FrameFreedom::Turn { k, offset: false })
+        }
         Motion::Slide { axis, .. } => axis.constant_components().map(|along| FrameFreedom::Slide { along }),
         Motion::Ball { .. } | Motion::Free { .. } | Motion::Placed => None,
     }
@@ -39,7 +43,7 @@ pub fn freedom_of_link_frame(motion: &Motion<'_>) -> Option<FrameFreedom> {
 pub fn rewrite_motion_in_frame<'g>(motion: &mut Motion<'g>, frame: &Pose<'g>, offset: f64) {
     match motion {
         Motion::Turn { axis, coordinate } => shift_coordinate(coordinate, *axis, offset),
-        Motion::Slide { axis, .. } => *axis = frame.rotation.to_child(*axis),
+        Motion::Slide { axis, .. } => *axis = frame.rotation.vector_in_child_axes(*axis),
         // The frame is shifted along the axis and rotated about it, without an offset.
         Motion::Helix { .. } => {}
         // These frames cannot be chosen.
@@ -74,14 +78,14 @@ pub fn movable_inertia<'g>(link: &Link<'g>, gauge: VanishingMomentConvention) ->
     let nothing = Inertia::zero(mass.graph());
     match &link.motion {
         Motion::Turn { axis, .. } => {
-            let k = coordinate_axis(*axis)?;
+            let k = index_of_parallel_axis(*axis)?;
             let mut along = nothing.moment;
             along.0[k] = moment[k];
             Some(Inertia { mass, moment: along, tensor: equalise_transverse_moments(&tensor, k, gauge) })
         }
         Motion::Slide { .. } => Some(Inertia { tensor, ..nothing }),
         Motion::Helix { axis, .. } => {
-            let k = coordinate_axis(*axis)?;
+            let k = index_of_parallel_axis(*axis)?;
             Some(Inertia { tensor: equalise_transverse_moments(&tensor, k, gauge), ..nothing })
         }
         Motion::Ball { .. } => Some(Inertia { mass, ..nothing }),
@@ -109,7 +113,7 @@ fn equalise_transverse_moments<'g>(
 }
 
 /// Returns the index of the coordinate axis to which a vector is parallel, if there is one.
-pub fn coordinate_axis(v: Vec3<'_>) -> Option<usize> {
+pub fn index_of_parallel_axis(v: Vec3<'_>) -> Option<usize> {
     let k = (0..3).find(|k| !v[*k].is_zero())?;
     let others = v[(k + 1) % 3].is_zero() && v[(k + 2) % 3].is_zero();
     others.then_some(k)

@@ -147,7 +147,7 @@ fn zero_rounding_errors_of_vector(v: Vector) -> Vector {
 
 /// Mass properties of a link as constant numbers.
 #[derive(Clone, Copy, Debug)]
-pub struct Mass {
+pub struct NumericMassProperties {
     /// Mass of the link, kg.
     pub mass: f64,
     /// First moment of the link about the frame's origin, kg·m.
@@ -156,10 +156,10 @@ pub struct Mass {
     pub tensor: Matrix,
 }
 
-impl Mass {
+impl NumericMassProperties {
     /// Returns the mass properties as numbers, if all of them are numeric.
-    pub fn from_inertia(inertia: &Inertia<'_>) -> Option<Mass> {
-        Some(Mass {
+    pub fn from_inertia(inertia: &Inertia<'_>) -> Option<NumericMassProperties> {
+        Some(NumericMassProperties {
             mass: inertia.mass.constant_value()?,
             moment: inertia.moment.constant_components()?,
             tensor: inertia.tensor.full_matrix().entries_if_all_constant()?,
@@ -183,7 +183,7 @@ impl Mass {
 
     /// Returns the mass properties about the origin `p` of another frame, in its axes. With the first
     /// moment `h`, the tensor is reduced by `2 (p · h) 1 − p hᵀ − h pᵀ` and increased by `m (|p|² 1 − p pᵀ)`.
-    pub fn mass_properties_in_frame(&self, place: &NumericFrame) -> Mass {
+    pub fn mass_properties_in_frame(&self, place: &NumericFrame) -> NumericMassProperties {
         let (r, p, h) = (&place.rotation, place.translation, self.moment);
         let diagonal = self.mass * dot(p, p) - 2.0 * dot(p, h);
         let tensor: Matrix = std::array::from_fn(|i| {
@@ -194,28 +194,32 @@ impl Mass {
         });
         let tensor = matrix_product(&transpose(r), &matrix_product(&tensor, r));
         let moment = multiply_transposed(r, add_scaled_vector(-self.mass, p, h));
-        Mass { mass: self.mass, moment, tensor }.round_moment_noise_to_zero()
+        NumericMassProperties { mass: self.mass, moment, tensor }.round_moment_noise_to_zero()
     }
 
     /// Returns the mass properties together with a point mass at `p`.
-    pub fn plus_point_mass(&self, mass: f64, p: Vector) -> Mass {
+    pub fn plus_point_mass(&self, mass: f64, p: Vector) -> NumericMassProperties {
         let square = dot(p, p);
         let entry_of_point_inertia =
             |i: usize, j: usize| if i == j { square - p[i] * p[j] } else { -p[i] * p[j] };
         let tensor = std::array::from_fn(|i| {
             std::array::from_fn(|j| self.tensor[i][j] + mass * entry_of_point_inertia(i, j))
         });
-        Mass { mass: self.mass + mass, moment: add_scaled_vector(mass, p, self.moment), tensor }
+        NumericMassProperties {
+            mass: self.mass + mass,
+            moment: add_scaled_vector(mass, p, self.moment),
+            tensor,
+        }
     }
 
     /// Replaces first moments and products of inertia at rounding level by zero.
-    fn round_moment_noise_to_zero(&self) -> Mass {
+    fn round_moment_noise_to_zero(&self) -> NumericMassProperties {
         let size = self.tensor.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
         let cleaned_tensor_entry = |i: usize, j: usize| match i == j {
             true => self.tensor[i][j],
             false => round_noise_to_zero(self.tensor[i][j], size),
         };
-        Mass {
+        NumericMassProperties {
             mass: self.mass,
             moment: zero_rounding_errors_of_vector(self.moment),
             tensor: std::array::from_fn(|i| std::array::from_fn(|j| cleaned_tensor_entry(i, j))),

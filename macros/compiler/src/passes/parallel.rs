@@ -7,7 +7,7 @@
 //! links, so all vector recursions hold unchanged; a link's mass properties become expressions of its angle.
 
 use super::Variant;
-use super::motions::coordinate_axis;
+use super::motions::index_of_parallel_axis;
 use crate::expr::{Expr, Rotation};
 use crate::kinematics::coordinate_as_expression;
 use crate::mechanism::{Link, Model, Motion};
@@ -48,7 +48,7 @@ fn variant_with_common_axes<'g>(variant: &Variant<'g>) -> Option<Variant<'g>> {
     for ((link, joint), member) in variant.model.links.iter_mut().zip(&mut variant.joints).zip(members) {
         let above = joint.parent.and_then(|p| turned[p.0].clone());
         if let Some(above) = &above {
-            joint.translation = above.to_parent(joint.translation);
+            joint.translation = above.vector_in_parent_axes(joint.translation);
         }
         let Some(ParallelChainJoint { axis, along, .. }) = member else {
             joint.rotation = compose_rotations(above, &joint.rotation);
@@ -64,8 +64,8 @@ fn variant_with_common_axes<'g>(variant: &Variant<'g>) -> Option<Variant<'g>> {
         let angle = own.map_or(carried, |own| Some(carried.map_or(own, |carried| carried + own)));
         let turn = angle.map(|angle| Rotation::rotation_about_coordinate_axis(axis, angle));
         if let Some(turn) = &turn {
-            link.inertia.moment = turn.to_parent(link.inertia.moment);
-            link.inertia.tensor = turn.sym_to_parent(link.inertia.tensor);
+            link.inertia.moment = turn.vector_in_parent_axes(link.inertia.moment);
+            link.inertia.tensor = turn.symmetric_tensor_in_parent_axes(link.inertia.tensor);
         }
         angles.push(angle);
         turned.push(turn);
@@ -107,7 +107,7 @@ fn parallel_chain_members(model: &Model<'_>) -> Vec<Option<ParallelChainJoint>> 
 /// Returns the coordinate axis about or along which a link moves.
 fn axis_of_motion(link: &Link<'_>) -> Option<usize> {
     let (Motion::Turn { axis, .. } | Motion::Slide { axis, .. }) = link.motion else { return None };
-    coordinate_axis(axis).filter(|k| axis[*k].constant_value().is_some_and(|c| c.abs() == 1.0))
+    index_of_parallel_axis(axis).filter(|k| axis[*k].constant_value().is_some_and(|c| c.abs() == 1.0))
 }
 
 /// Returns the angle by which a link rotates about a coordinate axis.

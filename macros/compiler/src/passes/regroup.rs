@@ -7,8 +7,8 @@
 //! `z`, and equal moments of inertia about `x` and `y`. For a prismatic joint they are all moments of
 //! inertia, for a screw equal moments about `x` and `y`, for a ball joint a mass at its centre.
 
-use super::motions::{VanishingMomentConvention, coordinate_axis, movable_inertia};
-use super::number::{Mass, NumericFrame};
+use super::motions::{VanishingMomentConvention, index_of_parallel_axis, movable_inertia};
+use super::number::{NumericFrame, NumericMassProperties};
 
 use crate::mechanism::{Inertia, Link, LinkId, Model, Motion};
 
@@ -57,11 +57,11 @@ pub fn move_inertias_to_parents(
 fn move_mass_to_child(model: &mut Model<'_>, k: usize) {
     let Motion::Turn { axis, .. } = &model.links[k].motion else { return };
     let (Some(own), Some(mut inertia)) =
-        (coordinate_axis(*axis), Mass::from_inertia(&model.links[k].inertia))
+        (index_of_parallel_axis(*axis), NumericMassProperties::from_inertia(&model.links[k].inertia))
     else {
         return;
     };
-    if !link_force_has_own_effect(model, k) {
+    if !has_force_effect_beyond_moment(model, k) {
         return;
     }
     let g = model.graph;
@@ -71,7 +71,7 @@ fn move_mass_to_child(model: &mut Model<'_>, k: usize) {
         let child = &model.links[c];
         let turns = matches!(child.motion, Motion::Turn { .. } | Motion::Ball { .. });
         let (Some(place), Some(mut other)) =
-            (NumericFrame::from_pose(&child.placement), Mass::from_inertia(&child.inertia))
+            (NumericFrame::from_pose(&child.placement), NumericMassProperties::from_inertia(&child.inertia))
         else {
             continue;
         };
@@ -101,7 +101,7 @@ fn move_mass_to_child(model: &mut Model<'_>, k: usize) {
 
 /// Returns true if the force on a link has an effect in addition to its moment: a revolute joint with a lever
 /// arm, or a prismatic joint, lies between the link and the root.
-fn link_force_has_own_effect(model: &Model<'_>, mut k: usize) -> bool {
+fn has_force_effect_beyond_moment(model: &Model<'_>, mut k: usize) -> bool {
     loop {
         let link = &model.links[k];
         match (&link.motion, link.parent) {

@@ -4,7 +4,7 @@
 
 use super::cost::{LENGTH, PRODUCT};
 use super::frames::move_contents_to_new_frames;
-use super::motions::coordinate_axis;
+use super::motions::index_of_parallel_axis;
 use crate::expr::{Expr, Vec3};
 use crate::mechanism::{Inertia, Link, Model, Motion, Pose};
 
@@ -32,7 +32,7 @@ pub fn slide_frames(model: &mut Model<'_>) {
 fn cheapest_shift<'g>(model: &Model<'g>, k: usize) -> Option<Vec3<'g>> {
     let link = &model.links[k];
     let Motion::Turn { axis, .. } = &link.motion else { return None };
-    let a = coordinate_axis(*axis)?;
+    let a = index_of_parallel_axis(*axis)?;
     let children: Vec<&Link<'g>> =
         model.links.iter().filter(|c| c.parent.is_some_and(|p| p.0 == k)).collect();
     let has_joint_motion = |c: &&Link<'g>| !matches!(c.motion, Motion::Placed);
@@ -44,7 +44,7 @@ fn cheapest_shift<'g>(model: &Model<'g>, k: usize) -> Option<Vec3<'g>> {
     {
         return None;
     }
-    let along = link.placement.rotation.to_parent(Vec3::coordinate_axis(model.graph, a));
+    let along = link.placement.rotation.vector_in_parent_axes(Vec3::coordinate_axis(model.graph, a));
     let cost_of_slide = |s: Expr<'g>| {
         let shift = Vec3::coordinate_axis(model.graph, a) * s;
         let lengths =
@@ -59,7 +59,7 @@ fn cheapest_shift<'g>(model: &Model<'g>, k: usize) -> Option<Vec3<'g>> {
     };
     let mut best = (model.graph.zero(), cost_of_slide(model.graph.zero()));
     let ends = children.iter().map(|c| c.placement.translation[a]);
-    for s in ends.chain([-link.placement.rotation.to_child(own)[a]]) {
+    for s in ends.chain([-link.placement.rotation.vector_in_child_axes(own)[a]]) {
         let cost = cost_of_slide(s);
         if cost < best.1 {
             best = (s, cost);

@@ -1,13 +1,13 @@
 //! Quantities that depend on accelerations: time derivatives of velocity-dependent expressions, and forces
 //! that are linear in the accelerations.
 
-use super::quantities::{vector_terms_by_link, vector_value};
+use super::quantities::{vector_terms_by_link, vector_value_from_terms};
 use super::resolved::ResolvedMatrix;
 use super::scope::{AllowedQuantities, Scope, Value};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{Expr, Mat3, Vec3};
 use crate::kinematics::{symbols_in, time_derivative, velocity_gradients};
-use crate::mechanism::{Model, Quantity, Space};
+use crate::mechanism::{ConfigurationSpace, Model, Quantity};
 use crate::syntax::{self, ExprKind};
 
 impl<'g> Scope<'_, 'g> {
@@ -61,9 +61,13 @@ impl<'g> Scope<'_, 'g> {
             }
         };
         let link = self.resolve_frame_link(frame, cx)?;
-        let components = self.kinematics.resolve(&vector_terms_by_link(terms), link, Vec3::zero(self.graph));
+        let components = self.kinematics.components_in_link_axes(
+            &vector_terms_by_link(terms),
+            link,
+            Vec3::zero(self.graph),
+        );
         let rates = self.time_derivatives(function, &argument.place, &components.0, cx)?;
-        Some(vector_value(vec![(link, Vec3([rates[0], rates[1], rates[2]]))]))
+        Some(vector_value_from_terms(vec![(link, Vec3([rates[0], rates[1], rates[2]]))]))
     }
 
     /// Returns the time derivatives of several expressions along the motion.
@@ -122,7 +126,7 @@ impl<'g> Scope<'_, 'g> {
             return None;
         }
         let kinematics = &self.kinematics;
-        let space = Space { graph: self.graph, charts: &kinematics.charts, speeds: None };
+        let space = ConfigurationSpace { graph: self.graph, charts: &kinematics.charts, speeds: None };
         let time_derivative_of_value = |(value, gradient): (&Expr<'g>, Vec<(usize, Expr<'g>)>)| {
             let terms = gradient.into_iter().map(|(k, d)| d * Quantity::Acceleration(k).expr(self.graph));
             terms.fold(time_derivative(space, *value), |sum, term| sum + term)
@@ -132,7 +136,7 @@ impl<'g> Scope<'_, 'g> {
 
     /// Whether the argument of `rate` is an expression of moving quantities, or the name of a definition,
     /// instead of a coordinate.
-    pub fn is_moving(&self, argument: &syntax::Expr) -> bool {
+    pub fn is_moving_expression(&self, argument: &syntax::Expr) -> bool {
         match &argument.kind {
             ExprKind::Name(name) => {
                 self.description.definitions.iter().any(|definition| definition.name.text == *name)

@@ -2,13 +2,18 @@
 
 use super::scope::Scope;
 use crate::diag::Diagnostics;
-use crate::expr::sample::always_equals;
+use crate::expr::sample::always_equals_number;
 use crate::expr::{Graph, Mat3, Rotation, Vec3};
 use crate::syntax;
 
 impl<'g> Scope<'_, 'g> {
     /// Returns a direction: a vector of unit length. If `normalise` is set, a constant vector is normalised.
-    pub fn unit_vector(&self, e: &syntax::Expr, normalise: bool, cx: &mut Diagnostics) -> Option<Vec3<'g>> {
+    pub fn resolve_unit_vector(
+        &self,
+        e: &syntax::Expr,
+        normalise: bool,
+        cx: &mut Diagnostics,
+    ) -> Option<Vec3<'g>> {
         if let Some(n) = e.literal_number().filter(|n| *n != 0.0) {
             let sign = if n < 0.0 { "-" } else { "" };
             cx.report_error(e.place.clone(), "expected a direction, found a number").add_help(format!(
@@ -19,12 +24,12 @@ impl<'g> Scope<'_, 'g> {
         let v = self.resolve_own_axes_vector(e, cx)?;
         let v = v.constant_components().map_or(v, |n| Vec3::vector_from_constants(self.graph, n));
         let squared = v.dot(v);
-        if v.is_zero() || always_equals(squared, 0.0) {
+        if v.is_zero() || always_equals_number(squared, 0.0) {
             cx.report_error(e.place.clone(), "this axis has no direction: it is zero")
                 .add_help("write `x`, `y`, `z` or another vector of unit length");
             return None;
         }
-        if always_equals(squared, 1.0) {
+        if always_equals_number(squared, 1.0) {
             return Some(v);
         }
         if normalise && let Some(n) = v.constant_components() {

@@ -8,20 +8,20 @@ use super::drawing::mechanism_drawing_pieces;
 use super::equilibria::resolve_equilibria;
 use super::forces::resolve_coordinate_actions;
 use super::limit::resolve_limits;
-use super::masses::check_inertial_products_finite;
+use super::masses::check_products_of_inertial_parameters;
 use super::numbering::CoordinateNumbering;
 use super::reaction::ReleasedJoints;
 use super::requirements::gather_requirements;
 use super::scope::{AllowedQuantities, Axes, Context, PlacedElements, ResolutionRecords, Scope, Value};
 use super::terms::set_signature_dependencies;
-use super::tree::{find_spanning_tree, loop_closing_joints};
+use super::tree::{find_spanning_tree, loop_closing_flags};
 use super::{drive, reaction, units};
 use crate::diag::{Diagnostics, join_names_with_and};
 use crate::expr::{Graph, Vec3};
 use crate::kinematics::CachedDerivatives;
 use crate::language::{Builtin, Callable};
 use crate::mechanism::{
-    Constraint, DerivativeCache, Freedom, Inertia, Model, ReleasedMechanism, Rule, Units,
+    Constraint, DegreeOfFreedomCounts, DerivativeCache, Inertia, Model, ReleasedMechanism, Rule, Units,
 };
 use crate::syntax::{Description, GROUND, InertiaOption, Name};
 use std::rc::Rc;
@@ -61,10 +61,11 @@ pub fn build_model<'g>(
         );
         return None;
     }
-    let mut model = build(description, graph, None, cx)?;
+    let mut model = build_with_released_joints(description, graph, None, cx)?;
     let joints = reaction::joints_to_release(&model);
     if !joints.is_empty() {
-        let released_model = build(description, graph, Some((&joints, &model.constraints)), cx)?;
+        let released_model =
+            build_with_released_joints(description, graph, Some((&joints, &model.constraints)), cx)?;
         for output in model.outputs.iter_mut().filter(|output| output.diagram.is_some()) {
             // The forces on a body are the reactions of its released joints.
             let found = released_model.outputs.iter().find(|other| other.name == output.name);
@@ -76,7 +77,7 @@ pub fn build_model<'g>(
 }
 
 /// Builds the model. A model with released joints has only the given constraints.
-fn build<'g>(
+fn build_with_released_joints<'g>(
     description: &Description,
     graph: &'g Graph,
     releasing: Option<(&[usize], &[Constraint<'g>])>,
@@ -160,7 +161,7 @@ fn empty_model<'g>(
         redundant: Vec::new(),
         dependent: None,
         solved: Vec::new(),
-        freedom: Freedom::default(),
+        freedom: DegreeOfFreedomCounts::default(),
         loads: Vec::new(),
         acceleration_forces: Vec::new(),
         passive: None,
@@ -209,7 +210,7 @@ impl<'a, 'g> Builder<'a, 'g> {
                 "choose another name, or remove the body: joints can start at `ground` without a declaration",
             );
         }
-        check_names(description, cx);
+        report_reserved_names(description, cx);
         let gravity = description.gravity.as_ref().and_then(|e| resolve_gravity_vector(e, &scope, cx));
         let friction_speed = match &description.friction_speed {
             Some(e) => scope.resolve_scalar(e, cx).unwrap_or(graph.one()),
@@ -247,7 +248,7 @@ impl<'a, 'g> Builder<'a, 'g> {
     /// Numbers the entries of `q` and `v`, those of released joints last.
     fn assign_coordinate_indices(&mut self, cx: &mut Diagnostics) {
         let d = self.scope.description;
-        let closing = loop_closing_joints(d);
+        let closing = loop_closing_flags(d);
         self.solved_loops = find_closed_form_loops(d, &closing, cx);
         let mut numbering =
             CoordinateNumbering::number_description_coordinates(d, (&closing, &self.solved_loops), cx);
@@ -288,7 +289,7 @@ impl<'a, 'g> Builder<'a, 'g> {
         set_signature_dependencies(&mut self.model);
         self.add_speeds(constrained, cx);
         self.add_frames();
-        check_inertial_products_finite(&self.scope, &self.model, cx);
+        check_products_of_inertial_parameters(&self.scope, &self.model, cx);
         if cx.is_empty() && self.scope.description.drawing {
             (self.model.drawing, self.model.heights) =
                 mechanism_drawing_pieces(&self.scope, &self.model, &self.surfaces);
@@ -332,12 +333,12 @@ fn resolve_gravity_vector<'g>(
     scope: &Scope<'_, 'g>,
     cx: &mut Diagnostics,
 ) -> Option<Vec3<'g>> {
-    if let Some(Value::Scalar(s)) = scope.resolve_value(e, &mut Diagnostics::discarded_diagnostics())
+    if let Some(Value::Scalar(s)) = scope.resolve_value(e, &mut Diagnostics::unprinted_diagnostics())
         && !s.is_zero()
     {
         let (sign, size) = match e.literal_number() {
             Some(n) => ("-", n.abs().to_string()),
-            None => ("-", e.to_source()),
+            None => ("-", e.short_source_text()),
         };
         cx.report_error(e.place.clone(), "expected a vector, found a scalar")
             .add_help(format!("gravity has a direction: write `gravity = {sign}{size} * y`"));
@@ -354,7 +355,7 @@ fn resolve_gravity_vector<'g>(
 }
 
 /// Reports names that have another meaning in expressions.
-fn check_names(description: &Description, cx: &mut Diagnostics) {
+fn report_reserved_names(description: &Description, cx: &mut Diagnostics) {
     let written = description.parameters.iter().chain(&description.inputs);
     let written = written.chain(description.coordinates.iter().map(|c| &c.name));
     let written = written.chain(description.definitions.iter().map(|d| &d.name));

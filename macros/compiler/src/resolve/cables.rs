@@ -4,14 +4,14 @@ use super::call::Call;
 use super::scope::{AllowedQuantities, Context, Placed, Scope, Value};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Extreme, Function, Vec3};
-use crate::language::{Method, SurfaceId};
+use crate::language::{BodyOrInertiaMethod, SurfaceId};
 use crate::mechanism::Rule;
 use crate::syntax::{self, ExprKind};
 use std::f64::consts::PI;
 
-const SPHERE: Option<Method> = Some(Method::Surface(SurfaceId::Sphere));
-const CYLINDER: Option<Method> = Some(Method::Surface(SurfaceId::Cylinder));
-const DRUM: Option<Method> = Some(Method::Surface(SurfaceId::Drum));
+const SPHERE: Option<BodyOrInertiaMethod> = Some(BodyOrInertiaMethod::Surface(SurfaceId::Sphere));
+const CYLINDER: Option<BodyOrInertiaMethod> = Some(BodyOrInertiaMethod::Surface(SurfaceId::Cylinder));
+const DRUM: Option<BodyOrInertiaMethod> = Some(BodyOrInertiaMethod::Surface(SurfaceId::Drum));
 
 impl<'g> Scope<'_, 'g> {
     /// Resolves `cable(a / b, drum.cylinder(radius, axis))` and `cable(a / b, ball.sphere(radius))`: the
@@ -32,13 +32,17 @@ impl<'g> Scope<'_, 'g> {
         let (a, b) = (a?, b?);
         let kinematics = &self.kinematics;
         let position_from_center = |p: &Placed<'g>| {
-            kinematics.resolve(&kinematics.position_between(p, &frame), frame.link, Vec3::zero(self.graph))
+            kinematics.components_in_link_axes(
+                &kinematics.position_between(p, &frame),
+                frame.link,
+                Vec3::zero(self.graph),
+            )
         };
         let (a, b) = (position_from_center(&a), position_from_center(&b));
         let (across, rise) = match axis {
             None => ([a, b], self.graph.zero()),
             Some(n) => {
-                let n = frame.pose.rotation.to_parent(n);
+                let n = frame.pose.rotation.vector_in_parent_axes(n);
                 let across = [a, b].map(|p| p + -(n * p.dot(n)));
                 (across, a.dot(n) - b.dot(n))
             }
@@ -48,8 +52,8 @@ impl<'g> Scope<'_, 'g> {
         }
         let [a, b] = across;
         let (sine, cosine) = match axis {
-            None => (a.cross(b).length(), a.dot(b)),
-            Some(n) => (frame.pose.rotation.to_parent(n).dot(a.cross(b)), a.dot(b)),
+            None => (a.cross(b).regularised_norm(), a.dot(b)),
+            Some(n) => (frame.pose.rotation.vector_in_parent_axes(n).dot(a.cross(b)), a.dot(b)),
         };
         // Around a cylinder, between zero and a full revolution.
         let angle = match axis {
@@ -60,7 +64,7 @@ impl<'g> Scope<'_, 'g> {
         let tangents = [a, b].map(|p| (p.dot(p) - square).sqrt());
         let contact_angle = tangents.iter().fold(angle, |angle, t| angle - t.atan2(radius));
         let wrapped = tangents[0] + tangents[1] + radius * contact_angle;
-        let straight = (a - b).length();
+        let straight = (a - b).regularised_norm();
         // One if the cable touches, otherwise zero. The derivative is zero.
         let touches = contact_angle
             .apply_function(Function::Signum)
@@ -120,7 +124,9 @@ impl<'g> Scope<'_, 'g> {
             &[value],
         );
         let axis = match axis {
-            Some(axis) => Some(self.call_in_context(constant_context(), |s| s.unit_vector(axis, false, cx))?),
+            Some(axis) => {
+                Some(self.call_in_context(constant_context(), |s| s.resolve_unit_vector(axis, false, cx))?)
+            }
             None => None,
         };
         Some((frame?, value, axis))

@@ -32,7 +32,7 @@ pub fn expressions_that_may_contain_positions(d: &Description) -> Vec<&Expr> {
     all.extend(d.definitions.iter().chain(&d.outputs).map(|definition| &definition.value));
     all.extend(d.energies.iter().chain(&d.dissipations).map(|(_, e)| e));
     for c in &d.constraints {
-        all.extend(c.other.iter().chain([&c.value]).chain(c.arguments.iter().map(|(_, e)| e)));
+        all.extend(c.other.iter().chain([&c.value]).chain(c.arguments.keyed_expressions().map(|(_, e)| e)));
     }
     all.extend(d.contacts.iter().flat_map(|c| [&c.first, &c.second]));
     for action in &d.actions {
@@ -40,7 +40,7 @@ pub fn expressions_that_may_contain_positions(d: &Description) -> Vec<&Expr> {
             Target::On(e) => all.push(e),
             Target::Between(a, b) => all.extend([a, b]),
         }
-        all.extend(action.arguments.iter().map(|(_, e)| e));
+        all.extend(action.arguments.keyed_expressions().map(|(_, e)| e));
     }
     all
 }

@@ -2,10 +2,10 @@
 //! is a vector from the origin of the body or a point of it.
 
 use super::call::Call;
-use super::quantities::vector_value;
-use super::scope::{AllowedQuantities, Placed, PlacedElementKind, Scope, Terms, Value};
+use super::quantities::vector_value_from_terms;
+use super::scope::{AllowedQuantities, Placed, PlacedElementKind, Scope, Value, VectorTerms};
 use crate::diag::Diagnostics;
-use crate::expr::sample::always_equals;
+use crate::expr::sample::always_equals_number;
 use crate::expr::{Expr, Vec3};
 use crate::mechanism::{LinkId, Pose};
 use crate::syntax;
@@ -27,7 +27,7 @@ impl<'g> Scope<'_, 'g> {
     pub fn instant_center(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let RelativeMotion { link, v, w, .. } = self.relative_motion(call, AllowedQuantities::Motion, cx)?;
         let square = w.dot(w);
-        if !always_equals(w.dot(v), 0.0) {
+        if !always_equals_number(w.dot(v), 0.0) {
             cx.report_error(
                 call.place.clone(),
                 "this body can slide along its axis of rotation: it has no point at rest",
@@ -38,7 +38,7 @@ impl<'g> Scope<'_, 'g> {
             );
             return None;
         }
-        Some(vector_value(vec![(link, w.cross(v).map(|c| c / square))]))
+        Some(vector_value_from_terms(vec![(link, w.cross(v).map(|c| c / square))]))
     }
 
     /// Resolves `screw_axis(body / frame)`: the vector from the body's origin to the nearest point of the
@@ -46,7 +46,7 @@ impl<'g> Scope<'_, 'g> {
     pub fn screw_axis(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let RelativeMotion { link, v, w, .. } = self.relative_motion(call, AllowedQuantities::Motion, cx)?;
         let square = w.dot(w);
-        Some(vector_value(vec![(link, w.cross(v).map(|c| c / square))]))
+        Some(vector_value_from_terms(vec![(link, w.cross(v).map(|c| c / square))]))
     }
 
     /// Resolves `screw_pitch(body / frame)`: the advance along the screw axis per radian, `ω·v / ω²`.
@@ -63,7 +63,7 @@ impl<'g> Scope<'_, 'g> {
             self.relative_motion(call, AllowedQuantities::Acceleration, cx)?;
         let [a, alpha] = rates?;
         let square = w.dot(w);
-        if !(is_always_zero(w.cross(alpha)) && always_equals(w.dot(a), 0.0)) {
+        if !(is_always_zero(w.cross(alpha)) && always_equals_number(w.dot(a), 0.0)) {
             cx.report_error(call.place.clone(), "this body does not move in a plane").add_help(
                 "an acceleration centre is that of a motion in a plane; accelerations of points are `a(point \
                  / point / frame)`",
@@ -71,7 +71,7 @@ impl<'g> Scope<'_, 'g> {
             return None;
         }
         let center = (a * square + alpha.cross(a)).map(|c| c / (square.square() + alpha.dot(alpha)));
-        Some(vector_value(vec![(link, center)]))
+        Some(vector_value_from_terms(vec![(link, center)]))
     }
 
     /// Returns the motion of a body that rotates relative to a frame, with accelerations if `allowed`
@@ -94,7 +94,11 @@ impl<'g> Scope<'_, 'g> {
         if motion.w.is_zero() {
             cx.report_error(
                 body.place.clone(),
-                format!("`{}` does not rotate with respect to `{}`", body.to_source(), frame.to_source()),
+                format!(
+                    "`{}` does not rotate with respect to `{}`",
+                    body.short_source_text(),
+                    frame.short_source_text()
+                ),
             )
             .add_help("a body in pure translation has no centre: all its points have the same velocity");
             return None;
@@ -117,7 +121,8 @@ impl<'g> Scope<'_, 'g> {
         // Any point fixed in the frame.
         let from =
             Placed { link: frame_link, pose: Pose::identity(self.graph), kind: PlacedElementKind::Body };
-        let resolve_in_link_axes = |terms: &Terms<'g>| kinematics.resolve(terms, link, zero);
+        let resolve_in_link_axes =
+            |terms: &VectorTerms<'g>| kinematics.components_in_link_axes(terms, link, zero);
         let rates = accelerates.then(|| {
             let a = kinematics.relative_acceleration_in_frame(&place, &from, frame_link, self.graph);
             [
@@ -154,25 +159,26 @@ impl<'g> Scope<'_, 'g> {
         }
         let body_with_mass = self.resolve_body_with_mass(body, cx)?;
         let about = self.placement_of_moving_point(about, cx)?;
-        let n = self.resolve_terms(axis, cx)?;
+        let n = self.resolve_vector_terms(axis, cx)?;
         let kinematics = &self.kinematics;
         let (placed, (mass, com, central)) = &body_with_mass;
         if mass.is_zero() {
-            cx.report_error(body.place.clone(), format!("`{}` has no mass", body.to_source()))
+            cx.report_error(body.place.clone(), format!("`{}` has no mass", body.short_source_text()))
                 .add_help("name a body with a `mass`");
             return None;
         }
         let (link, zero) = (placed.link, Vec3::zero(self.graph));
-        let length = kinematics.resolve(&n, link, zero).length();
-        let n: Terms<'g> = n.into_iter().map(|(link, n)| (link, n.map(|c| c / length))).collect();
+        let length = kinematics.components_in_link_axes(&n, link, zero).regularised_norm();
+        let n: VectorTerms<'g> = n.into_iter().map(|(link, n)| (link, n.map(|c| c / length))).collect();
         let pose = Pose { translation: placed.pose.transform_point(*com), ..placed.pose.clone() };
         let offset = kinematics.position_between(&Placed { pose, ..placed.clone() }, &about);
-        let [axis_here, arm] = [&n, &offset].map(|terms| kinematics.resolve(terms, link, zero));
+        let [axis_here, arm] =
+            [&n, &offset].map(|terms| kinematics.components_in_link_axes(terms, link, zero));
         let arm = arm + -(axis_here * axis_here.dot(arm));
         if is_always_zero(arm) {
             cx.report_error(
                 call.place.clone(),
-                format!("the centre of mass of `{}` lies on this axis", body.to_source()),
+                format!("the centre of mass of `{}` lies on this axis", body.short_source_text()),
             )
             .add_help(
                 "there is no centre of percussion then: a pure torque rotates the body without a force at \
@@ -180,22 +186,22 @@ impl<'g> Scope<'_, 'g> {
             );
             return None;
         }
-        let central = placed.pose.rotation.sym_to_parent(*central);
+        let central = placed.pose.rotation.symmetric_tensor_in_parent_axes(*central);
         if !is_always_zero((central * axis_here).cross(axis_here)) {
             cx.report_error(
                 axis.place.clone(),
-                format!("this axis is not a principal axis of inertia of `{}`", body.to_source()),
+                format!("this axis is not a principal axis of inertia of `{}`", body.short_source_text()),
             )
             .add_help("every impulse then loads the bearings: there is no centre of percussion");
             return None;
         }
         let moment = self.moment_of_inertia_about_point(&body_with_mass, &about, [&n, &n]);
         let share: Expr<'g> = moment / (*mass * arm.dot(arm));
-        Some(vector_value(vec![(link, arm * share)]))
+        Some(vector_value_from_terms(vec![(link, arm * share)]))
     }
 }
 
 /// Returns whether a vector is zero for all values of its symbols.
 fn is_always_zero(v: Vec3<'_>) -> bool {
-    v.0.iter().all(|c| always_equals(*c, 0.0))
+    v.0.iter().all(|c| always_equals_number(*c, 0.0))
 }

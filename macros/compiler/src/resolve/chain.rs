@@ -9,7 +9,7 @@ use super::reaction::RELEASED;
 use super::scope::{Placed, PlacedElementKind, Scope};
 use crate::diag::Diagnostics;
 use crate::expr::Vec3;
-use crate::mechanism::{CoulombFriction, Dashpot, Inertia, Input, Link, LinkId, Motion, Pose, Rule};
+use crate::mechanism::{CoulombFriction, Dashpot, Inertia, InputEffect, Link, LinkId, Motion, Pose, Rule};
 use crate::syntax::Joint;
 
 /// Resolves the arguments of a joint, only to report their errors.
@@ -21,7 +21,7 @@ pub fn report_joint_argument_errors(scope: &Scope<'_, '_>, joint: &Joint, cx: &m
 
 impl<'g> Builder<'_, 'g> {
     /// Places the child body of a joint.
-    pub fn place_joint(&mut self, j: usize, child: usize, cx: &mut Diagnostics) {
+    pub fn place_joint_child(&mut self, j: usize, child: usize, cx: &mut Diagnostics) {
         let joint = &self.scope.description.joints[j];
         let motions = self.scope.motions_of_joint(joint, cx);
         let (on_parent, on_child) =
@@ -93,7 +93,7 @@ impl<'g> Builder<'_, 'g> {
         self.model.dashpots.extend(damping.map(|damping| Dashpot { on: coordinate, damping }));
         self.model.frictions.extend(friction.map(|friction| CoulombFriction { on: coordinate, friction }));
         if joint.driven && joint.mimic.is_none() {
-            self.model.inputs.push((name, Input::Coordinate(coordinate)));
+            self.model.inputs.push((name, InputEffect::Coordinate(coordinate)));
         }
     }
 

@@ -6,7 +6,7 @@
 use super::elementary::ElementaryMotion;
 use super::scope::{Placed, PlacedElementKind, Scope};
 use crate::diag::Diagnostics;
-use crate::expr::sample::always_equals;
+use crate::expr::sample::always_equals_number;
 use crate::expr::{Expr, Rotation, Vec3};
 use crate::kinematics::{express_in_link_axes, perpendicular_directions};
 use crate::mechanism::{ClosedFormJoint, LinkId, Pose};
@@ -56,7 +56,7 @@ pub fn find_closed_form_loops(
         };
         let is_in_other_loop = |k: usize| found.iter().any(|e| e.sides.contains(&k));
         let is_solvable_joint = |k: &usize| {
-            d.joints[*k].kind.rotates_about_one_axis().is_some()
+            d.joints[*k].kind.single_axis_joint_is_rotational().is_some()
                 && d.joints[*k].mimic.is_none()
                 && !is_in_other_loop(*k)
         };
@@ -117,9 +117,9 @@ pub fn pose_across_solved_joint<'g>(
         scope,
         &frame,
         second_frame.link,
-        second_frame.pose.rotation.to_parent(second_axis),
+        second_frame.pose.rotation.vector_in_parent_axes(second_axis),
     );
-    let is_always_zero = |e: Expr<'g>| always_equals(e, 0.0);
+    let is_always_zero = |e: Expr<'g>| always_equals_number(e, 0.0);
     let in_plane = match b.slide {
         None => normal.cross(axis).0.iter().all(|e| is_always_zero(*e)),
         Some(slide) => is_always_zero(slide.dot(axis)),
@@ -181,8 +181,14 @@ fn side_of_closed_form_loop<'g>(
     let on_child = scope.frame_of_endpoint(&joint.child, cx)?;
     let closing = scope.frame_of_endpoint(end, cx)?.translation;
     let point = on_child.inverse().transform_point(closing);
-    let in_first_frame =
-        |v| vector_in_frame_axes(scope, frame, joint_frame.link, joint_frame.pose.rotation.to_parent(v));
+    let in_first_frame = |v| {
+        vector_in_frame_axes(
+            scope,
+            frame,
+            joint_frame.link,
+            joint_frame.pose.rotation.vector_in_parent_axes(v),
+        )
+    };
     let terms = scope.kinematics.position_between(&joint_frame, frame);
     let zero = Vec3::zero(scope.graph);
     let base = terms.iter().fold(zero, |sum, (link, v)| sum + vector_in_frame_axes(scope, frame, *link, *v));
@@ -199,7 +205,7 @@ fn vector_in_frame_axes<'g>(
     v: Vec3<'g>,
 ) -> Vec3<'g> {
     let v = express_in_link_axes(&scope.kinematics.joints, v, link, frame.link);
-    let v = frame.pose.rotation.to_child(v);
+    let v = frame.pose.rotation.vector_in_child_axes(v);
     scope.with_released_coordinates_zero(&v.0).try_into().map_or(v, Vec3)
 }
 

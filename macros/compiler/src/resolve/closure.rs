@@ -9,7 +9,7 @@ use crate::kinematics::jet::{self, Jet, MovingVector, RelativeLinkMotion};
 use crate::kinematics::{
     AXES, express_in_link_axes, normalised_or_zero, perpendicular_directions, time_derivative,
 };
-use crate::mechanism::{Constraint, Measure, Model, ReactionComponent};
+use crate::mechanism::{Constraint, MeasuredQuantity, Model, ReactionComponent};
 
 /// Returns the rows of a loop that is solved in closed form. Its Pin keeps both ends together in the plane of
 /// the loop.
@@ -86,15 +86,15 @@ struct ClosingJoint<'s, 'a, 'g> {
 
 impl<'g> ClosingJoint<'_, '_, 'g> {
     /// Returns a direction that is fixed in the parent, with its derivatives, in the common axes.
-    fn parent_direction(&self, v: Vec3<'g>) -> MovingVector<'g> {
+    fn direction_fixed_in_parent(&self, v: Vec3<'g>) -> MovingVector<'g> {
         let joints = &self.scope.kinematics.joints;
-        jet::motion_of_direction(joints, &self.on_parent, self.parent.pose.rotation.to_parent(v))
+        jet::motion_of_direction(joints, &self.on_parent, self.parent.pose.rotation.vector_in_parent_axes(v))
     }
 
     /// Returns a direction that is fixed in the child, with its derivatives, in the common axes.
-    fn child_direction(&self, v: Vec3<'g>) -> MovingVector<'g> {
+    fn direction_fixed_in_child(&self, v: Vec3<'g>) -> MovingVector<'g> {
         let joints = &self.scope.kinematics.joints;
-        jet::motion_of_direction(joints, &self.on_child, self.child.pose.rotation.to_parent(v))
+        jet::motion_of_direction(joints, &self.on_child, self.child.pose.rotation.vector_in_parent_axes(v))
     }
 
     /// Returns rows that keep the origin of the child's joint frame in the directions in which the joint
@@ -105,8 +105,13 @@ impl<'g> ClosingJoint<'_, '_, 'g> {
         let origin = jet::motion_of_point(joints, &self.on_parent, self.parent.pose.translation);
         let gap = jet::motion_of_point(joints, &self.on_child, self.child.pose.translation).minus(&origin);
         if slides.is_empty() {
-            let row_along_axis =
-                |k| self.row(AXES[k], gap.component(k), (Measure::Length, Vec3::coordinate_axis(g, k)));
+            let row_along_axis = |k| {
+                self.joint_constraint_row(
+                    AXES[k],
+                    gap.component(k),
+                    (MeasuredQuantity::Length, Vec3::coordinate_axis(g, k)),
+                )
+            };
             return (0..3).map(row_along_axis).collect();
         }
         let across: Vec<(&str, Vec3<'g>)> = match slides.as_slice() {
@@ -116,8 +121,8 @@ impl<'g> ClosingJoint<'_, '_, 'g> {
         };
         let mut rows = Vec::new();
         for (word, direction) in across {
-            let e = self.parent_direction(direction);
-            rows.push(self.row(word, gap.dot(&e), (Measure::Length, e.value)));
+            let e = self.direction_fixed_in_parent(direction);
+            rows.push(self.joint_constraint_row(word, gap.dot(&e), (MeasuredQuantity::Length, e.value)));
         }
         for motion in motions {
             match motion {
@@ -135,17 +140,21 @@ impl<'g> ClosingJoint<'_, '_, 'g> {
     /// Returns the row of a screw joint that couples the child's advance along the axis to its rotation.
     /// `gap` leads from the parent's joint frame to the child's.
     fn screw_row(&self, (axis, pitch): (Vec3<'g>, Expr<'g>), gap: Vec3<'g>) -> Constraint<'g> {
-        let n = self.parent_direction(axis).value;
+        let n = self.direction_fixed_in_parent(axis).value;
         let [(_, first), (_, second)] = perpendicular_directions(axis);
-        let parent_direction = |v| self.parent_direction(v).value;
-        let rotated = self.child_direction(first).value;
-        let (sine, cosine) = (parent_direction(second).dot(rotated), parent_direction(first).dot(rotated));
+        let parent_direction_in_common_axes = |v| self.direction_fixed_in_parent(v).value;
+        let rotated = self.direction_fixed_in_child(first).value;
+        let (sine, cosine) = (
+            parent_direction_in_common_axes(second).dot(rotated),
+            parent_direction_in_common_axes(first).dot(rotated),
+        );
         let advance = gap.dot(n) / pitch;
         let value = pitch * (sine * advance.cos() - cosine * advance.sin());
         let rate = time_derivative(self.scope.configuration_space(), value);
         let second = time_derivative(self.scope.configuration_space(), rate);
         // The force pushes the child back along the axis; the torque rotates it by the pitch.
-        let mut row = self.row("advance", Jet { value, rate, second }, (Measure::Length, -n));
+        let mut row =
+            self.joint_constraint_row("advance", Jet { value, rate, second }, (MeasuredQuantity::Length, -n));
         row.transmits.push(self.reaction_component_along_direction(true, n * pitch));
         row
     }
@@ -165,8 +174,8 @@ impl<'g> ClosingJoint<'_, '_, 'g> {
                     let (l, m) = ((k + 1) % 3, (k + 2) % 3);
                     (
                         format!("w{}", AXES[k]),
-                        self.parent_direction(coordinate_axis(m)),
-                        self.child_direction(coordinate_axis(l)),
+                        self.direction_fixed_in_parent(coordinate_axis(m)),
+                        self.direction_fixed_in_child(coordinate_axis(l)),
                         self.scope.graph.zero(),
                     )
                 })
@@ -176,8 +185,8 @@ impl<'g> ClosingJoint<'_, '_, 'g> {
                 .map(|(word, e)| {
                     (
                         format!("tilt_{word}"),
-                        self.parent_direction(e),
-                        self.child_direction(*coordinate_axis),
+                        self.direction_fixed_in_parent(e),
+                        self.direction_fixed_in_child(*coordinate_axis),
                         self.scope.graph.zero(),
                     )
                 })
@@ -185,8 +194,8 @@ impl<'g> ClosingJoint<'_, '_, 'g> {
             [first, second, ..] => {
                 vec![(
                     "axes".to_string(),
-                    self.parent_direction(*first),
-                    self.child_direction(*second),
+                    self.direction_fixed_in_parent(*first),
+                    self.direction_fixed_in_child(*second),
                     first.dot(*second),
                 )]
             }
@@ -195,14 +204,19 @@ impl<'g> ClosingJoint<'_, '_, 'g> {
             |(word, e, carried, angle): (String, MovingVector<'g>, MovingVector<'g>, Expr<'g>)| {
                 let mut jet = e.dot(&carried);
                 jet.value -= angle;
-                self.row(&word, jet, (Measure::Angle, carried.value.cross(e.value)))
+                self.joint_constraint_row(&word, jet, (MeasuredQuantity::Angle, carried.value.cross(e.value)))
             };
         rows.into_iter().map(direction_constraint_row).collect()
     }
 
     /// Returns a row of the joint. Its multiplier is a force (of a length) or a torque (of an angle) on the
     /// child along `direction`, in the axes of the link that carries both ends.
-    fn row(&self, word: &str, jet: Jet<'g>, (measure, direction): (Measure, Vec3<'g>)) -> Constraint<'g> {
+    fn joint_constraint_row(
+        &self,
+        word: &str,
+        jet: Jet<'g>,
+        (measure, direction): (MeasuredQuantity, Vec3<'g>),
+    ) -> Constraint<'g> {
         let joint = &self.scope.description.joints[self.j].name;
         let Jet { value, rate, second } = jet;
         Constraint {
@@ -212,7 +226,9 @@ impl<'g> ClosingJoint<'_, '_, 'g> {
             rate,
             bias: second,
             measure,
-            transmits: vec![self.reaction_component_along_direction(measure == Measure::Angle, direction)],
+            transmits: vec![
+                self.reaction_component_along_direction(measure == MeasuredQuantity::Angle, direction),
+            ],
             group: 0,
             determines: false,
             friction: Vec::new(),

@@ -9,11 +9,11 @@ use super::scope::{AllowedQuantities, Context, Scope, Value};
 use crate::diag::Diagnostics;
 use crate::expr::eval::eval_one;
 use crate::expr::replace::substitute_symbols;
-use crate::expr::sample::{always_equals, sample_of_symbol};
+use crate::expr::sample::{always_equals_number, sample_of_symbol};
 use crate::expr::{Expr, Vec3};
 use crate::kinematics::{AXES, symbols_in, time_derivative, velocity_gradient};
 use crate::language::{Callable, FunctionId};
-use crate::mechanism::{Measure, Model, Pose, Quantity};
+use crate::mechanism::{MeasuredQuantity, Model, Pose, Quantity};
 use crate::syntax::{self, ConstraintKind, ExprKind};
 
 /// Returns the rows of a declared constraint, the `index`-th; `None` after an error.
@@ -23,7 +23,7 @@ pub fn resolve_constraint<'g>(
     (index, constraint): (usize, &syntax::Constraint),
     cx: &mut Diagnostics,
 ) -> Option<ConstraintRows<'g>> {
-    let measure = Measure::Declared(index);
+    let measure = MeasuredQuantity::Declared(index);
     match constraint.kind {
         ConstraintKind::Holonomic => holonomic_rows(scope, constraint, measure, cx),
         ConstraintKind::Nonholonomic => nonholonomic_rows(scope, constraint, measure, cx),
@@ -36,11 +36,11 @@ pub fn resolve_constraint<'g>(
 fn holonomic_rows<'g>(
     scope: &Scope<'_, 'g>,
     constraint: &syntax::Constraint,
-    measure: Measure,
+    measure: MeasuredQuantity,
     cx: &mut Diagnostics,
 ) -> Option<ConstraintRows<'g>> {
     scope.records.borrow_mut().in_holonomic_constraint = true;
-    let rows = difference(scope, constraint, AllowedQuantities::Placement, cx);
+    let rows = difference_of_constraint_sides(scope, constraint, AllowedQuantities::Placement, cx);
     scope.records.borrow_mut().in_holonomic_constraint = false;
     let (components, redundant) = split_off_vanishing_components(rows);
     let mut rows = Vec::new();
@@ -75,7 +75,7 @@ pub fn report_constraint_errors<'g>(
         ConstraintKind::Holonomic | ConstraintKind::Nonholonomic => {
             scope.records.borrow_mut().in_holonomic_constraint = holonomic;
             let allowed = if holonomic { AllowedQuantities::Placement } else { AllowedQuantities::Motion };
-            let _ = difference(scope, constraint, allowed, cx);
+            let _ = difference_of_constraint_sides(scope, constraint, allowed, cx);
             scope.records.borrow_mut().in_holonomic_constraint = false;
         }
         ConstraintKind::Rolling | ConstraintKind::Slipping => {
@@ -88,11 +88,15 @@ pub fn report_constraint_errors<'g>(
 fn nonholonomic_rows<'g>(
     scope: &Scope<'_, 'g>,
     constraint: &syntax::Constraint,
-    measure: Measure,
+    measure: MeasuredQuantity,
     cx: &mut Diagnostics,
 ) -> Option<ConstraintRows<'g>> {
-    let (components, redundant) =
-        split_off_vanishing_components(difference(scope, constraint, AllowedQuantities::Motion, cx));
+    let (components, redundant) = split_off_vanishing_components(difference_of_constraint_sides(
+        scope,
+        constraint,
+        AllowedQuantities::Motion,
+        cx,
+    ));
     let mut rows = Vec::new();
     for (name, rate) in components {
         let place = &constraint.value.place;
@@ -134,7 +138,7 @@ fn nonholonomic_rows<'g>(
 }
 
 /// Returns the left side minus the right side: one component, or three with names.
-fn difference<'g>(
+fn difference_of_constraint_sides<'g>(
     scope: &Scope<'_, 'g>,
     constraint: &syntax::Constraint,
     allowed: AllowedQuantities,
@@ -181,12 +185,13 @@ fn difference<'g>(
     }
     let terms: Vec<_> = sides
         .iter()
-        .map(|e| scope.call_in_context(ground_axes_context(), |scope| scope.resolve_terms(e, cx)))
+        .map(|e| scope.call_in_context(ground_axes_context(), |scope| scope.resolve_vector_terms(e, cx)))
         .collect();
     let Some(terms) = terms.into_iter().collect::<Option<Vec<_>>>() else { return Vec::new() };
     let kinematics = &scope.kinematics;
     let zero = Vec3::zero(scope.graph);
-    let sides: Vec<Vec3<'g>> = terms.iter().map(|t| kinematics.resolve(t, None, zero)).collect();
+    let sides: Vec<Vec3<'g>> =
+        terms.iter().map(|t| kinematics.components_in_link_axes(t, None, zero)).collect();
     let gap = sides.get(1).map_or(sides[0], |right| sides[0] - *right);
     (0..3).map(|k| (format!("{name}.{}", AXES[k]), gap[k])).collect()
 }
@@ -200,7 +205,7 @@ fn split_off_vanishing_components<'g>(
     let is_identically_zero = |e: &Expr<'g>| {
         let is_parameter = |q: Quantity| matches!(q, Quantity::Parameter(_));
         symbols_in(&[*e]).into_iter().all(|s| is_parameter(Quantity::from_symbol(s)))
-            && always_equals(*e, 0.0)
+            && always_equals_number(*e, 0.0)
     };
     let (vanishing, remaining): (Vec<_>, Vec<_>) =
         rows.into_iter().partition(|(_, e)| is_identically_zero(e));
@@ -221,7 +226,7 @@ fn remove_cancelling_velocities<'g>(rate: Expr<'g>, gradient: &[(usize, Expr<'g>
             _ => sample_of_symbol(s, 0),
         })
     };
-    let is_constant = |e: Expr<'g>| {
+    let is_independent_of_velocities = |e: Expr<'g>| {
         let first = evaluate_at_signed_velocities(e, 0);
         let is_close = |x: f64| (x - first).abs() <= 1e-9 * (1.0 + first.abs());
         first.is_finite()
@@ -235,7 +240,7 @@ fn remove_cancelling_velocities<'g>(rate: Expr<'g>, gradient: &[(usize, Expr<'g>
         })
     };
     let remainder = substitute_velocities(rate, 0.0);
-    if !gradient.iter().all(|(_, c)| is_constant(*c))
+    if !gradient.iter().all(|(_, c)| is_independent_of_velocities(*c))
         || !evaluate_at_signed_velocities(remainder, 0).is_finite()
     {
         return None;

@@ -12,7 +12,7 @@ impl Scope<'_, '_> {
     pub fn report_unknown_method(&self, e: &syntax::Expr, method: &Member, cx: &mut Diagnostics) {
         let text = method.text.as_str();
         let base = match &e.kind {
-            ExprKind::Method(base, ..) => base.to_source(),
+            ExprKind::Method(base, ..) => base.short_source_text(),
             _ => String::new(),
         };
         let error = cx.report_error(method.place.clone(), format!("`.{text}(…)` has no value here"));
@@ -136,9 +136,9 @@ pub fn report_invalid_matrix(e: &syntax::Expr, cx: &mut Diagnostics) {
     match (what, items.as_slice()) {
         ("numbers", [a, b, c]) => error.add_help(format!(
             "write `diagonal({}, {}, {})`",
-            a.to_source(),
-            b.to_source(),
-            c.to_source()
+            a.short_source_text(),
+            b.short_source_text(),
+            c.short_source_text()
         )),
         _ => error.add_help(MATRIX_SYNTAX),
     };

@@ -1,12 +1,12 @@
 //! Curves and fields: derivatives of an expression by a coordinate or a position.
 
 use super::call::Call;
-use super::quantities::{vector_terms_by_link, vector_value};
+use super::quantities::{vector_terms_by_link, vector_value_from_terms};
 use super::scope::{AllowedQuantities, Context, Placed, Scope, Value};
 use crate::diag::Diagnostics;
 use crate::expr::diff::DirectionalDerivative;
 use crate::expr::replace::substitute_symbols;
-use crate::expr::sample::always_equals;
+use crate::expr::sample::always_equals_number;
 use crate::expr::{Expr, Mat3, Rotation, Vec3};
 use crate::kinematics::symbols_in;
 use crate::language;
@@ -32,10 +32,10 @@ impl<'g> Scope<'_, 'g> {
                 None
             }
             (_, [argument]) => {
-                let terms = scope.resolve_terms(argument, cx)?;
-                let v = scope.kinematics.resolve(&terms, start.link, Vec3::zero(scope.graph));
-                let [x, y, z] = start.pose.rotation.to_child(v).0;
-                if always_equals(x.square() + y.square(), 0.0) {
+                let terms = scope.resolve_vector_terms(argument, cx)?;
+                let v = scope.kinematics.components_in_link_axes(&terms, start.link, Vec3::zero(scope.graph));
+                let [x, y, z] = start.pose.rotation.vector_in_child_axes(v).0;
+                if always_equals_number(x.square() + y.square(), 0.0) {
                     cx.report_error(
                         argument.place.clone(),
                         format!("this vector lies on the z axis, on which `{}` has no directions", name.text),
@@ -71,7 +71,7 @@ impl<'g> Scope<'_, 'g> {
     ) -> Option<Rotation<'g>> {
         let ([first, second, _], link) = self.curve_derivatives_by_coordinate("frenet", curve, along, cx)?;
         let binormal = first.cross(second);
-        if binormal.0.iter().all(|c| always_equals(*c, 0.0)) {
+        if binormal.0.iter().all(|c| always_equals_number(*c, 0.0)) {
             cx.report_error(curve.place.clone(), "this curve is straight, and has no normal")
                 .add_help("its tangent is `unit(…)` of its direction; curvature and torsion are zero");
             return None;
@@ -82,8 +82,12 @@ impl<'g> Scope<'_, 'g> {
         };
         let (t, b) = (normalised_vector(first), normalised_vector(binormal));
         let axes = [t, b.cross(t), b].map(|axis| {
-            let here = self.kinematics.resolve(&vec![(link, axis)], start.link, Vec3::zero(self.graph));
-            start.pose.rotation.to_child(here)
+            let here = self.kinematics.components_in_link_axes(
+                &vec![(link, axis)],
+                start.link,
+                Vec3::zero(self.graph),
+            );
+            start.pose.rotation.vector_in_child_axes(here)
         });
         Some(Rotation::from_matrix(Mat3::from_fn(|i, j| axes[j][i])))
     }
@@ -92,18 +96,18 @@ impl<'g> Scope<'_, 'g> {
     pub fn resolve_curvature(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [first, second, _] = self.curve_derivatives(call, cx)?;
         let normal = first.cross(second);
-        if normal.0.iter().all(|c| always_equals(*c, 0.0)) {
+        if normal.0.iter().all(|c| always_equals_number(*c, 0.0)) {
             return Some(Value::Scalar(self.graph.zero()));
         }
         let speed = first.norm();
-        Some(Value::Scalar(normal.length() / (speed * speed * speed)))
+        Some(Value::Scalar(normal.regularised_norm() / (speed * speed * speed)))
     }
 
     /// Resolves `torsion(curve, s)`: `(r′ × r″)·r‴ / |r′ × r″|²` of a curve `r` that depends on a coordinate.
     pub fn resolve_torsion(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [first, second, third] = self.curve_derivatives(call, cx)?;
         let normal = first.cross(second);
-        if normal.0.iter().all(|c| always_equals(*c, 0.0)) {
+        if normal.0.iter().all(|c| always_equals_number(*c, 0.0)) {
             cx.report_error(call.arguments[0].place.clone(), "this curve is straight, and has no torsion")
                 .add_help("its curvature is zero: it has no normal");
             return None;
@@ -137,32 +141,37 @@ impl<'g> Scope<'_, 'g> {
         let kinematics = &self.kinematics;
         let zero = Vec3::zero(self.graph);
         let link_rotates_with_parameter = |link: Option<LinkId>| {
-            let axes = (0..3)
-                .map(|k| kinematics.resolve(&vec![(link, Vec3::coordinate_axis(self.graph, k))], None, zero));
+            let axes = (0..3).map(|k| {
+                kinematics.components_in_link_axes(
+                    &vec![(link, Vec3::coordinate_axis(self.graph, k))],
+                    None,
+                    zero,
+                )
+            });
             axes.into_iter().any(|axis| symbols_in(&axis.0).contains(&symbol))
         };
         let link = terms.first().and_then(|(link, _)| *link);
         let link = if link_rotates_with_parameter(link) { None } else { link };
-        let position = kinematics.resolve(&terms, link, zero);
+        let position = kinematics.components_in_link_axes(&terms, link, zero);
         let mut derivative = DirectionalDerivative::with_respect_to(symbol, self.graph);
         let scale = self.graph.num(1.0 / c.ratio);
-        let mut next = |v: Vec3<'g>| v.map(|c| derivative.differentiate(c) * scale);
-        let first = next(position);
+        let mut next_derivative = |v: Vec3<'g>| v.map(|c| derivative.differentiate(c) * scale);
+        let first = next_derivative(position);
         if first.is_zero() {
             cx.report_error(
                 curve.place.clone(),
-                format!("this vector does not depend on `{}`", along.to_source()),
+                format!("this vector does not depend on `{}`", along.short_source_text()),
             )
             .add_help(format!("write `{text}(curve, s)`, a vector that depends on a coordinate `s`"));
             return None;
         }
-        let second = next(first);
-        Some(([first, second, next(second)], link))
+        let second = next_derivative(first);
+        Some(([first, second, next_derivative(second)], link))
     }
 
     /// Returns the coordinate with this name as the parameter of a curve.
     fn named_coordinate(&self, text: &str, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Coordinate> {
-        let name = e.to_source();
+        let name = e.short_source_text();
         let kinematics = &self.kinematics;
         if let Some((_, c, _)) = kinematics.coordinates.iter().find(|(known, ..)| *known == name) {
             return Some(*c);
@@ -221,6 +230,6 @@ impl<'g> Scope<'_, 'g> {
                 .add_help(format!("a field is an expression of `r({name} / ground)`"));
             return None;
         }
-        Some(vector_value(vec![(placed.link, gradient)]))
+        Some(vector_value_from_terms(vec![(placed.link, gradient)]))
     }
 }

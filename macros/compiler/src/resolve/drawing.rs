@@ -7,11 +7,13 @@ use super::scope::{AllowedQuantities, Context, Placed, PlacedElementKind, Scope}
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Rotation, Vec3};
 use crate::kinematics::symbols_in;
-use crate::language::{Callable, Method, Solid};
-use crate::mechanism::drawing::{Anchor, entries_by_row, entries_of_vectors, pose_relative_to_named_frame};
-use crate::mechanism::{Input, LinkId, Model, Piece, PieceKind, Pose, Quantity, Role};
+use crate::language::{BodyOrInertiaMethod, Callable, Solid};
+use crate::mechanism::drawing::{
+    PoseInFrame, entries_by_row, entries_of_vectors, pose_relative_to_named_frame,
+};
+use crate::mechanism::{InputEffect, LinkId, Model, Piece, PieceShape, Pose, Quantity, ShownObjectKind};
 use crate::syntax::{
-    self, Action, BinaryOp, Callee, DriveLaw, Endpoint, ExprKind, GROUND, Shape, Target, Visual,
+    self, Action, BinaryOp, Callee, Endpoint, ExprKind, FileForceLaw, GROUND, Shape, Target, Visual,
 };
 use std::collections::BTreeSet;
 
@@ -49,7 +51,13 @@ impl<'g> DrawnElements<'_, '_, 'g> {
         if !self.model.gravity.is_zero() {
             let numbers = entries_of_vectors(&[Vec3::zero(self.scope.graph), self.model.gravity]);
             let (name, frames) = ("gravity".to_string(), [None, None]);
-            pieces.push(Piece { name, role: Role::Gravity, kind: PieceKind::Gravity, frames, numbers });
+            pieces.push(Piece {
+                name,
+                role: ShownObjectKind::Gravity,
+                kind: PieceShape::Gravity,
+                frames,
+                numbers,
+            });
         }
         self.add_body_pieces(&shown, &mut pieces);
         self.add_joint_pieces(&shown, &mut pieces);
@@ -59,7 +67,7 @@ impl<'g> DrawnElements<'_, '_, 'g> {
         (pieces, heights)
     }
 
-    fn pose_relative_to_named_frame(&self, link: Option<LinkId>, pose: &Pose<'g>) -> Option<Anchor<'g>> {
+    fn pose_relative_to_named_frame(&self, link: Option<LinkId>, pose: &Pose<'g>) -> Option<PoseInFrame<'g>> {
         pose_relative_to_named_frame(&self.model.frames, link, pose)
     }
 
@@ -69,8 +77,8 @@ impl<'g> DrawnElements<'_, '_, 'g> {
     }
 
     /// Returns the link and the pose of the end of a joint.
-    fn anchor_of_joint_end(&self, end: &Endpoint) -> Option<Anchor<'g>> {
-        let mut silent = Diagnostics::discarded_diagnostics();
+    fn anchor_of_joint_end(&self, end: &Endpoint) -> Option<PoseInFrame<'g>> {
+        let mut silent = Diagnostics::unprinted_diagnostics();
         let on_body = self.scope.frame_of_endpoint(end, &mut silent)?;
         if end.body.text == GROUND {
             return Some((None, on_body));
@@ -89,7 +97,7 @@ impl<'g> DrawnElements<'_, '_, 'g> {
         let g = self.scope.graph;
         for Visual { on, shape, mesh } in &self.scope.description.visuals {
             let Some((frame, pose)) = self.anchor_of_joint_end(on) else { continue };
-            let z = pose.rotation.to_parent(Vec3::coordinate_axis(g, 2));
+            let z = pose.rotation.vector_in_parent_axes(Vec3::coordinate_axis(g, 2));
             let number_expression = |x: f64| g.num(x);
             let entries_of_round_solid = |numbers: &[f64]| {
                 let axis = entries_of_vectors(&[pose.translation, z]);
@@ -107,25 +115,25 @@ impl<'g> DrawnElements<'_, '_, 'g> {
                 (Shape::Sphere(radius), _) => {
                     let mut numbers = entries_of_vectors(&[pose.translation]);
                     numbers.push(number_expression(*radius));
-                    (PieceKind::Sphere, numbers)
+                    (PieceShape::Sphere, numbers)
                 }
-                (Shape::Cuboid(edges), _) => (PieceKind::Cuboid, numbers_of_oriented_shape(*edges)),
-                (Shape::Ellipsoid(halves), _) => (PieceKind::Ellipsoid, numbers_of_oriented_shape(*halves)),
+                (Shape::Cuboid(edges), _) => (PieceShape::Cuboid, numbers_of_oriented_shape(*edges)),
+                (Shape::Ellipsoid(halves), _) => (PieceShape::Ellipsoid, numbers_of_oriented_shape(*halves)),
                 (Shape::Cylinder(radius, height), _) => {
-                    (PieceKind::Cylinder, entries_of_round_solid(&[*radius, *height]))
+                    (PieceShape::Cylinder, entries_of_round_solid(&[*radius, *height]))
                 }
                 (Shape::Capsule(radius, height), _) => {
-                    (PieceKind::Capsule, entries_of_round_solid(&[*radius, *height]))
+                    (PieceShape::Capsule, entries_of_round_solid(&[*radius, *height]))
                 }
                 (Shape::Mesh, Some(mesh)) => {
-                    (PieceKind::Mesh(mesh.path.clone()), numbers_of_oriented_shape(mesh.scale))
+                    (PieceShape::Mesh(mesh.path.clone()), numbers_of_oriented_shape(mesh.scale))
                 }
                 (Shape::Mesh, None) => continue,
             };
             let name = on.body.text.clone();
-            pieces.push(Piece { name, role: Role::Visual, kind, frames: [frame, None], numbers });
+            pieces.push(Piece { name, role: ShownObjectKind::Visual, kind, frames: [frame, None], numbers });
         }
-        let is_mesh = |piece: &&Piece<'g>| matches!(piece.kind, PieceKind::Mesh(_));
+        let is_mesh = |piece: &&Piece<'g>| matches!(piece.kind, PieceShape::Mesh(_));
         let meshes: BTreeSet<&String> = pieces.iter().filter(is_mesh).map(|piece| &piece.name).collect();
         pieces.iter().map(|piece| &piece.name).filter(|name| !meshes.contains(name)).cloned().collect()
     }
@@ -153,7 +161,7 @@ impl<'g> DrawnElements<'_, '_, 'g> {
             if !complete {
                 let tensor = inertia.diagonal.into_iter().chain(inertia.off);
                 let is_point = inertia.diagonal.iter().all(|i| i.is_zero());
-                let kind = if is_point { PieceKind::Point } else { PieceKind::Inertia };
+                let kind = if is_point { PieceShape::Point } else { PieceShape::Inertia };
                 let inertial_parameters = std::iter::once(mass).chain(tensor);
                 let inertial_parameters: Vec<Expr<'g>> =
                     if is_point { Vec::new() } else { inertial_parameters.collect() };
@@ -162,7 +170,7 @@ impl<'g> DrawnElements<'_, '_, 'g> {
             }
             pieces.extend(solids.into_iter().map(|(kind, numbers)| Piece {
                 name: name.clone(),
-                role: Role::Body,
+                role: ShownObjectKind::Body,
                 kind,
                 frames: [Some(frame), None],
                 numbers,
@@ -173,7 +181,13 @@ impl<'g> DrawnElements<'_, '_, 'g> {
             let frames = [self.body_frame_index(&name), None];
             let numbers = entries_of_vectors(&[Vec3::zero(g)]);
             if frames[0].is_some() {
-                pieces.push(Piece { name, role: Role::Body, kind: PieceKind::Point, frames, numbers });
+                pieces.push(Piece {
+                    name,
+                    role: ShownObjectKind::Body,
+                    kind: PieceShape::Point,
+                    frames,
+                    numbers,
+                });
             }
         }
     }
@@ -185,15 +199,15 @@ impl<'g> DrawnElements<'_, '_, 'g> {
         e: &syntax::Expr,
         orientation: &Rotation<'g>,
         com: Vec3<'g>,
-        found: &mut Vec<(PieceKind, Vec<Expr<'g>>)>,
+        found: &mut Vec<(PieceShape, Vec<Expr<'g>>)>,
     ) -> bool {
-        let mut silent = Diagnostics::discarded_diagnostics();
+        let mut silent = Diagnostics::unprinted_diagnostics();
         match &e.kind {
             ExprKind::Binary(BinaryOp::Add, a, b, _) => {
                 self.collect_solids(a, orientation, com, found)
                     && self.collect_solids(b, orientation, com, found)
             }
-            ExprKind::Method(inner, method, steps) if method.id == Some(Method::Rotated) => {
+            ExprKind::Method(inner, method, steps) if method.id == Some(BodyOrInertiaMethod::Rotated) => {
                 let Some(rotation) = self.scope.resolve_rotation(steps, &mut silent) else { return false };
                 self.collect_solids(inner, &orientation.clone().compose_with(&rotation), com, found)
             }
@@ -205,11 +219,13 @@ impl<'g> DrawnElements<'_, '_, 'g> {
                     _ => (None, arguments.as_slice()),
                 };
                 match axis {
-                    Some(axis) => match self.scope.unit_vector(axis, false, &mut silent) {
-                        Some(axis) => numbers.extend(entries_of_vectors(&[orientation.to_parent(axis)])),
+                    Some(axis) => match self.scope.resolve_unit_vector(axis, false, &mut silent) {
+                        Some(axis) => {
+                            numbers.extend(entries_of_vectors(&[orientation.vector_in_parent_axes(axis)]))
+                        }
                         None => return false,
                     },
-                    None if kind == PieceKind::Sphere => {}
+                    None if kind == PieceShape::Sphere => {}
                     None => numbers.extend(entries_by_row(&orientation.rotation_matrix())),
                 }
                 // The first argument is the mass.
@@ -246,10 +262,11 @@ impl<'g> DrawnElements<'_, '_, 'g> {
             let Some((kind, axis)) = self.joint_symbol(joint) else { continue };
             let mut numbers = entries_of_vectors(&[on_parent.translation]);
             numbers.extend(
-                axis.iter().flat_map(|axis| entries_of_vectors(&[on_parent.rotation.to_parent(*axis)])),
+                axis.iter()
+                    .flat_map(|axis| entries_of_vectors(&[on_parent.rotation.vector_in_parent_axes(*axis)])),
             );
             let name = joint.name.text.clone();
-            pieces.push(Piece { name, role: Role::Joint, kind, frames: [parent, None], numbers });
+            pieces.push(Piece { name, role: ShownObjectKind::Joint, kind, frames: [parent, None], numbers });
         }
         for body in &self.scope.description.bodies {
             let name = &body.name.text;
@@ -260,8 +277,8 @@ impl<'g> DrawnElements<'_, '_, 'g> {
             for other in places.chain(com).filter(|other| !(*other - first).is_zero()) {
                 pieces.push(Piece {
                     name: name.clone(),
-                    role: Role::Link,
-                    kind: PieceKind::Bar,
+                    role: ShownObjectKind::Link,
+                    kind: PieceShape::Bar,
                     frames: [Some(frame), Some(frame)],
                     numbers: entries_of_vectors(&[first, other]),
                 });
@@ -270,13 +287,13 @@ impl<'g> DrawnElements<'_, '_, 'g> {
     }
 
     /// Returns the symbol of a joint, with its axis on the parent.
-    fn joint_symbol(&self, joint: &syntax::Joint) -> Option<(PieceKind, Option<Vec3<'g>>)> {
+    fn joint_symbol(&self, joint: &syntax::Joint) -> Option<(PieceShape, Option<Vec3<'g>>)> {
         let (kind, axes) = joint_drawing_symbol(joint)?;
         let unit_axis = |axes: &[syntax::Expr]| {
-            self.scope.unit_vector(
+            self.scope.resolve_unit_vector(
                 axes.first()?,
                 joint.normalise_axis,
-                &mut Diagnostics::discarded_diagnostics(),
+                &mut Diagnostics::unprinted_diagnostics(),
             )
         };
         Some((kind, axes.map_or(Some(None), |axes| unit_axis(axes).map(Some))?))
@@ -294,7 +311,7 @@ impl<'g> DrawnElements<'_, '_, 'g> {
         }
         for (k, (name, input)) in self.model.inputs.iter().enumerate() {
             let Some((kind, frames, numbers)) = self.input_arrow(k, name, input) else { continue };
-            pieces.push(Piece { name: name.clone(), role: Role::Input, kind, frames, numbers });
+            pieces.push(Piece { name: name.clone(), role: ShownObjectKind::Input, kind, frames, numbers });
         }
     }
 
@@ -303,19 +320,21 @@ impl<'g> DrawnElements<'_, '_, 'g> {
     fn add_element_pieces(
         &self,
         action: &Action,
-        long: PieceKind,
-        round: PieceKind,
+        long: PieceShape,
+        round: PieceShape,
         pieces: &mut Vec<Piece<'g>>,
     ) {
         let found = match &action.on {
             Target::Between(a, b) => {
-                let mut silent = Diagnostics::discarded_diagnostics();
-                let mut place = |e| {
+                let mut silent = Diagnostics::unprinted_diagnostics();
+                let mut anchor_of_placement = |e| {
                     self.scope
                         .resolve_placement(e, &mut silent)
                         .and_then(|p| self.pose_relative_to_named_frame(p.link, &p.pose))
                 };
-                place(a).zip(place(b)).map(|(a, b)| (long, [a.0, b.0], [a.1.translation, b.1.translation]))
+                anchor_of_placement(a)
+                    .zip(anchor_of_placement(b))
+                    .map(|(a, b)| (long, [a.0, b.0], [a.1.translation, b.1.translation]))
             }
             Target::On(on) => {
                 self.single_coordinate_joint_data(on).map(|(turns, frames, ends, axis)| match turns {
@@ -326,7 +345,7 @@ impl<'g> DrawnElements<'_, '_, 'g> {
         };
         if let Some((kind, frames, vectors)) = found {
             let (name, numbers) = (action.name.text.clone(), entries_of_vectors(&vectors));
-            pieces.push(Piece { name, role: Role::Element, kind, frames, numbers });
+            pieces.push(Piece { name, role: ShownObjectKind::Element, kind, frames, numbers });
         }
     }
 
@@ -342,15 +361,16 @@ impl<'g> DrawnElements<'_, '_, 'g> {
         let ((a, on_a), (b, on_b)) =
             self.anchor_of_joint_end(&joint.parent).zip(self.anchor_of_joint_end(&joint.child))?;
         let (kind, axis) = self.joint_symbol(joint)?;
-        let axis = on_a.rotation.to_parent(axis?);
-        Some((kind == PieceKind::Hinge, [a, b], [on_a.translation, on_b.translation], axis))
+        let axis = on_a.rotation.vector_in_parent_axes(axis?);
+        Some((kind == PieceShape::Hinge, [a, b], [on_a.translation, on_b.translation], axis))
     }
 
     /// Returns the joint that an input of a file drives.
     fn joint_driven_by_input(&self, input: &str) -> Option<&str> {
         let drives = &self.scope.description.drives;
-        let found =
-            drives.iter().find(|drive| matches!(&drive.law, DriveLaw::Input(_)) && drive.name.text == input);
+        let found = drives
+            .iter()
+            .find(|drive| matches!(&drive.law, FileForceLaw::Input(_)) && drive.name.text == input);
         found.and_then(|drive| drive.on.weighted_joints().first()).map(|(joint, _)| joint.text.as_str())
     }
 
@@ -359,12 +379,12 @@ impl<'g> DrawnElements<'_, '_, 'g> {
         &self,
         k: usize,
         name: &str,
-        input: &Input<'g>,
-    ) -> Option<(PieceKind, [Option<usize>; 2], Vec<Expr<'g>>)> {
+        input: &InputEffect<'g>,
+    ) -> Option<(PieceShape, [Option<usize>; 2], Vec<Expr<'g>>)> {
         let g = self.scope.graph;
         let (link, point, direction, torque) = match input {
-            Input::Named | Input::Sum(..) => return None,
-            Input::Coordinate(_) => {
+            InputEffect::Named | InputEffect::Sum(..) => return None,
+            InputEffect::Coordinate(_) => {
                 let on = self.scope.description.actions.iter().find(|action| action.name.text == name);
                 let joint = match on.map(|action| &action.on) {
                     Some(Target::On(on)) => self.single_coordinate_joint_data(on),
@@ -379,11 +399,11 @@ impl<'g> DrawnElements<'_, '_, 'g> {
                     }
                 };
                 let (turns, [a, _], [position, _], axis) = joint?;
-                let kind = if turns { PieceKind::Torque(k) } else { PieceKind::Force(k) };
+                let kind = if turns { PieceShape::Torque(k) } else { PieceShape::Force(k) };
                 return Some((kind, [a, a], entries_of_vectors(&[position, axis])));
             }
-            Input::Force { link, point, along } => (*link, *point, along, false),
-            Input::Torque { link, about } => (*link, Vec3::zero(g), about, true),
+            InputEffect::Force { link, point, along } => (*link, *point, along, false),
+            InputEffect::Torque { link, about } => (*link, Vec3::zero(g), about, true),
         };
         let [(axes, direction)] = direction.as_slice() else { return None };
         let place = Placed {
@@ -393,8 +413,9 @@ impl<'g> DrawnElements<'_, '_, 'g> {
         };
         let (frame, pose) = self.pose_relative_to_named_frame(place.link, &place.pose)?;
         let (axes_frame, axes) = self.pose_relative_to_named_frame(*axes, &Pose::identity(g))?;
-        let kind = if torque { PieceKind::Torque(k) } else { PieceKind::Force(k) };
-        let numbers = entries_of_vectors(&[pose.translation, axes.rotation.to_parent(*direction)]);
+        let kind = if torque { PieceShape::Torque(k) } else { PieceShape::Force(k) };
+        let numbers =
+            entries_of_vectors(&[pose.translation, axes.rotation.vector_in_parent_axes(*direction)]);
         Some((kind, [frame, axes_frame], numbers))
     }
 }

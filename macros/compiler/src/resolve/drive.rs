@@ -7,21 +7,27 @@ use super::forces::{
     spring_force_of_law,
 };
 use super::scope::{AllowedQuantities, Context, Scope};
-use super::terms::{Stretch, coordinate_stretch, position_value_and_rate};
+use super::terms::{StretchWithRate, coordinate_stretch, value_and_rate_of_expression};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr as Value, Extreme, Function, Vec3};
 use crate::kinematics::{time_derivative, velocity_gradient};
 use crate::mechanism::{Coordinate, CoulombFriction, Dashpot, Pose, Quantity, Spring};
-use crate::syntax::{Description, Drive, DriveLaw, DriveQuantity, DriveTarget, Expr, Wrench};
+use crate::syntax::{
+    Description, Expr, FileForceElement, FileForceLaw, FileForceQuantity, FileForceTarget, Wrench,
+};
 
 /// Returns the inputs among the force elements of a file, in the order of their entries in `u`. These entries
 /// follow those of the driven joints and precede all others.
-pub fn drives_that_are_inputs(d: &Description) -> impl Iterator<Item = &Drive> {
-    d.drives.iter().filter(|drive| matches!(drive.law, DriveLaw::Input(_)))
+pub fn drives_that_are_inputs(d: &Description) -> impl Iterator<Item = &FileForceElement> {
+    d.drives.iter().filter(|drive| matches!(drive.law, FileForceLaw::Input(_)))
 }
 
 /// Returns the coordinates of the joints on which an element of a file acts, each multiplied by its weight.
-pub fn weighted_coordinates(scope: &Scope<'_, '_>, drive: &Drive, cx: &mut Diagnostics) -> Vec<Coordinate> {
+pub fn weighted_coordinates(
+    scope: &Scope<'_, '_>,
+    drive: &FileForceElement,
+    cx: &mut Diagnostics,
+) -> Vec<Coordinate> {
     let mut terms: Vec<Coordinate> = Vec::new();
     for (joint, weight) in drive.on.weighted_joints() {
         match weighted_coordinate(scope, &joint.text, *weight) {
@@ -36,17 +42,17 @@ pub fn weighted_coordinates(scope: &Scope<'_, '_>, drive: &Drive, cx: &mut Diagn
 /// of an element that is an input.
 pub fn drive_quantities<'g>(
     scope: &Scope<'_, 'g>,
-    drive: &Drive,
+    drive: &FileForceElement,
     (input, terms): (usize, &[Coordinate]),
     cx: &mut Diagnostics,
-) -> Vec<(DriveQuantity, Value<'g>)> {
+) -> Vec<(FileForceQuantity, Value<'g>)> {
     let g = scope.graph;
     match drive.law {
-        DriveLaw::Input(_) => vec![(DriveQuantity::Input, Quantity::Input(input).expr(g))],
-        DriveLaw::Expression { offset, .. } => {
+        FileForceLaw::Input(_) => vec![(FileForceQuantity::Input, Quantity::Input(input).expr(g))],
+        FileForceLaw::Expression { offset, .. } => {
             let stretch = length_or_wrench_of_drive(scope, &drive.on, terms, cx);
             let [length, rate] = stretch.map_or([g.zero(); 2], |stretch| [stretch.value, stretch.rate]);
-            vec![(DriveQuantity::Length, length + g.num(offset)), (DriveQuantity::Rate, rate)]
+            vec![(FileForceQuantity::Length, length + g.num(offset)), (FileForceQuantity::Rate, rate)]
         }
         _ => Vec::new(),
     }
@@ -55,14 +61,14 @@ pub fn drive_quantities<'g>(
 /// Returns the length or wrench on which an element acts.
 fn length_or_wrench_of_drive<'g>(
     scope: &Scope<'_, 'g>,
-    on: &DriveTarget,
+    on: &FileForceTarget,
     terms: &[Coordinate],
     cx: &mut Diagnostics,
-) -> Option<Stretch<'g>> {
+) -> Option<StretchWithRate<'g>> {
     match on {
-        DriveTarget::Sum(_) => Some(stretch_of_coordinate_sum(scope, terms)),
-        DriveTarget::Length(e) => position_value_and_rate(scope, e, cx),
-        DriveTarget::Wrench(wrench) => rate_conjugate_to_wrench(scope, wrench, cx),
+        FileForceTarget::Sum(_) => Some(stretch_of_coordinate_sum(scope, terms)),
+        FileForceTarget::Length(e) => value_and_rate_of_expression(scope, e, cx),
+        FileForceTarget::Wrench(wrench) => rate_conjugate_to_wrench(scope, wrench, cx),
     }
 }
 
@@ -70,7 +76,7 @@ fn length_or_wrench_of_drive<'g>(
 /// is an input.
 pub fn resolve_drive_forces<'g>(
     scope: &Scope<'_, 'g>,
-    drive: &Drive,
+    drive: &FileForceElement,
     (input, terms): (usize, &[Coordinate]),
     cx: &mut Diagnostics,
 ) -> Option<Forces<'g>> {
@@ -78,22 +84,22 @@ pub fn resolve_drive_forces<'g>(
     let on = if let [on] = terms { Some(*on) } else { None };
     // The ratio of the coordinate is the weight.
     match (on, &drive.law) {
-        (Some(on), &DriveLaw::Spring { stiffness, free }) => {
+        (Some(on), &FileForceLaw::Spring { stiffness, free }) => {
             let springs = vec![Spring { on, stiffness: g.num(stiffness), free: g.num(free) }];
             return Some(Forces { springs, ..Forces::default() });
         }
-        (Some(on), &DriveLaw::Damper(damping)) => {
+        (Some(on), &FileForceLaw::Damper(damping)) => {
             let dashpots = vec![Dashpot { on, damping: g.num(damping) }];
             return Some(Forces { dashpots, ..Forces::default() });
         }
-        (Some(on), &DriveLaw::Friction(force)) => {
+        (Some(on), &FileForceLaw::Friction(force)) => {
             let frictions = vec![CoulombFriction { on, friction: g.num(force) }];
             return Some(Forces { frictions, ..Forces::default() });
         }
         _ => {}
     }
     // A force on a constant length has no effect.
-    if let (DriveTarget::Sum(_), DriveLaw::Input(_)) = (&drive.on, &drive.law) {
+    if let (FileForceTarget::Sum(_), FileForceLaw::Input(_)) = (&drive.on, &drive.law) {
         return None;
     }
     let stretch = length_or_wrench_of_drive(scope, &drive.on, terms, cx)?;
@@ -102,14 +108,14 @@ pub fn resolve_drive_forces<'g>(
     }
     let syntax_number = |value| Expr::number_at(value, place);
     match drive.law {
-        DriveLaw::Spring { stiffness, free } => spring_force_of_law(
+        FileForceLaw::Spring { stiffness, free } => spring_force_of_law(
             scope,
             stretch,
             &SpringLaw::Linear(&syntax_number(stiffness)),
             g.num(free),
             cx,
         ),
-        DriveLaw::Slack { stiffness, range: [low, high] } => {
+        FileForceLaw::Slack { stiffness, range: [low, high] } => {
             let short = (stretch.value - g.num(low)).minimum_or_maximum(Extreme::Min, g.zero());
             let long = (stretch.value - g.num(high)).minimum_or_maximum(Extreme::Max, g.zero());
             let excess = if low == high { stretch.value - g.num(low) } else { short + long };
@@ -117,27 +123,27 @@ pub fn resolve_drive_forces<'g>(
             let cubic = second * (1.0 / 3.0) + third * 0.25 * excess;
             Some(Forces::forces_of_potentials([excess.square() * (first * 0.5 + cubic * excess)]))
         }
-        DriveLaw::PolynomialDamper(damping) => {
+        FileForceLaw::PolynomialDamper(damping) => {
             let [first, second, third] = damping.map(|c| g.num(c));
             let speed = stretch.rate.apply_function(Function::Abs);
             let factor = first + (second + third * speed) * speed;
             Some(Forces::resisting_force(stretch.rate, factor * stretch.rate))
         }
-        DriveLaw::Damper(damping) => {
+        FileForceLaw::Damper(damping) => {
             let damping = scope.resolve_scalar(&syntax_number(damping), cx)?;
             Some(Forces::resisting_force(stretch.rate, damping * stretch.rate))
         }
-        DriveLaw::Friction(force) => dry_friction(
+        FileForceLaw::Friction(force) => dry_friction(
             scope,
             stretch.rate,
             [Some(&syntax_number(force)), None, None, None, None],
             place,
             cx,
         ),
-        DriveLaw::Inerter(value) => inertance_force(scope, stretch.rate, &syntax_number(value), cx),
-        DriveLaw::Push(force) => load_split_by_acceleration(stretch.rate, g.num(force), place, cx),
-        DriveLaw::Input(_) => Some(load_of_input(input, stretch.rate)),
-        DriveLaw::Expression { ref force, .. } => {
+        FileForceLaw::Inerter(value) => inertance_force(scope, stretch.rate, &syntax_number(value), cx),
+        FileForceLaw::Push(force) => load_split_by_acceleration(stretch.rate, g.num(force), place, cx),
+        FileForceLaw::Input(_) => Some(load_of_input(input, stretch.rate)),
+        FileForceLaw::Expression { ref force, .. } => {
             let context = Context::new(AllowedQuantities::Motion, Some((None, Pose::identity(g))));
             let force = scope.call_in_context(context, |scope| scope.resolve_scalar(force, cx))?;
             load_split_by_acceleration(stretch.rate, force, place, cx)
@@ -151,7 +157,7 @@ fn rate_conjugate_to_wrench<'g>(
     scope: &Scope<'_, 'g>,
     wrench: &Wrench,
     cx: &mut Diagnostics,
-) -> Option<Stretch<'g>> {
+) -> Option<StretchWithRate<'g>> {
     let g = scope.graph;
     let on = scope.resolve_placement(&wrench.on, cx)?;
     let against = match &wrench.against {
@@ -160,7 +166,7 @@ fn rate_conjugate_to_wrench<'g>(
     };
     let axes = against.as_ref().unwrap_or(&on);
     let [force, torque] = [wrench.force, wrench.torque]
-        .map(|vector| axes.pose.rotation.to_parent(Vec3::vector_from_constants(g, vector)));
+        .map(|vector| axes.pose.rotation.vector_in_parent_axes(Vec3::vector_from_constants(g, vector)));
     let kinematics = &scope.kinematics;
     let rate = match &against {
         None => on.link.map_or(g.zero(), |link| {
@@ -171,13 +177,13 @@ fn rate_conjugate_to_wrench<'g>(
         Some(against) => {
             let zero = Vec3::zero(g);
             let between = kinematics.position_between(&on, against);
-            let path = kinematics.resolve(&between, against.link, zero).dot(force);
+            let path = kinematics.components_in_link_axes(&between, against.link, zero).dot(force);
             let turning = kinematics.angular_velocity_in_frame(on.link, against.link, g);
-            let turning = kinematics.resolve(&turning, against.link, zero).dot(torque);
+            let turning = kinematics.components_in_link_axes(&turning, against.link, zero).dot(torque);
             time_derivative(scope.configuration_space(), path) + turning
         }
     };
-    Some(Stretch { value: g.zero(), rate, square: g.zero(), signed: false })
+    Some(StretchWithRate { value: g.zero(), rate, square: g.zero(), signed: false })
 }
 
 /// Returns the coordinate of a joint with one degree of freedom, multiplied by a weight.
@@ -189,9 +195,9 @@ fn weighted_coordinate<'g>(scope: &Scope<'_, 'g>, joint: &str, weight: f64) -> O
 }
 
 /// Returns the stretch of a sum of coordinates.
-fn stretch_of_coordinate_sum<'g>(scope: &Scope<'_, 'g>, terms: &[Coordinate]) -> Stretch<'g> {
+fn stretch_of_coordinate_sum<'g>(scope: &Scope<'_, 'g>, terms: &[Coordinate]) -> StretchWithRate<'g> {
     let zero = scope.graph.zero();
-    let mut sum = Stretch { value: zero, rate: zero, square: zero, signed: false };
+    let mut sum = StretchWithRate { value: zero, rate: zero, square: zero, signed: false };
     for c in terms {
         let one = coordinate_stretch(scope, c);
         (sum.value, sum.rate) = (sum.value + one.value, sum.rate + one.rate);

@@ -1,7 +1,9 @@
 //! Forces of a single force element, before they are added to the model.
 
 use crate::expr::Expr;
-use crate::mechanism::{AccelerationForce, CoulombFriction, Dashpot, Inertance, Input, Load, Model, Spring};
+use crate::mechanism::{
+    AccelerationForce, CoulombFriction, Dashpot, Inertance, InputEffect, Load, Model, Spring,
+};
 
 /// Forces of a force element, which the builder adds to those of the other elements.
 #[derive(Default)]
@@ -23,7 +25,7 @@ pub struct Forces<'g> {
     /// Force laws that are linear in accelerations.
     pub acceleration_forces: Vec<AccelerationForce<'g>>,
     /// Effect of the entry of `u` that belongs to the element.
-    pub input: Option<Input<'g>>,
+    pub input: Option<InputEffect<'g>>,
 }
 
 impl<'g> Forces<'g> {

@@ -4,9 +4,9 @@ use super::joint::full_name;
 use super::range::FiniteParameterRange;
 use super::scope::{NamedCoordinate, Scope};
 use crate::diag::{Diagnostics, Place};
-use crate::expr::replace::replace_all;
+use crate::expr::replace::substitute_symbols_in_all;
 use crate::expr::{self, Rotation, Vec3};
-use crate::mechanism::{LinkId, Pose, Quantity, Rule, Space};
+use crate::mechanism::{ConfigurationSpace, LinkId, Pose, Quantity, Rule};
 use crate::syntax::{Endpoint, Expr, ExprKind, GROUND, Name};
 
 impl<'g> Scope<'_, 'g> {
@@ -92,14 +92,14 @@ impl<'g> Scope<'_, 'g> {
     }
 
     /// Returns the configuration space, after all links are placed.
-    pub fn configuration_space(&self) -> Space<'_, 'g> {
-        Space { graph: self.graph, charts: &self.kinematics.charts, speeds: None }
+    pub fn configuration_space(&self) -> ConfigurationSpace<'_, 'g> {
+        ConfigurationSpace { graph: self.graph, charts: &self.kinematics.charts, speeds: None }
     }
 
     /// Returns expressions with the coordinates of released joints, and their rates, set to zero.
     pub fn with_released_coordinates_zero(&self, e: &[expr::Expr<'g>]) -> Vec<expr::Expr<'g>> {
         let Some((q, v)) = self.kinematics.first_released else { return e.to_vec() };
-        replace_all(e, &|s| {
+        substitute_symbols_in_all(e, &|s| {
             let released = match Quantity::from_symbol(s) {
                 Quantity::Configuration(k) => k >= q.0,
                 Quantity::Velocity(k) | Quantity::Acceleration(k) => k >= v.0,

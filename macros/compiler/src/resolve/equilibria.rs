@@ -67,7 +67,7 @@ fn resolve_equilibrium<'g>(
     for (place, value) in &declared.values {
         let Some(variable) = resolve_variable(scope, model, place, cx) else { continue };
         if !given.insert(variable) {
-            cx.report_error(place.place.clone(), format!("`{}` is given twice", place.to_source()))
+            cx.report_error(place.place.clone(), format!("`{}` is given twice", place.short_source_text()))
                 .add_help("remove one of the two");
             continue;
         }
@@ -129,7 +129,7 @@ fn resolve_variable<'g>(
     place: &Expr,
     cx: &mut Diagnostics,
 ) -> Option<Variable> {
-    let text = place.to_source();
+    let text = place.short_source_text();
     let coordinate = model.configuration.iter().position(|name| *name == text);
     let find_input = || model.inputs.iter().position(|(name, _)| *name == text).map(Variable::Input);
     let state =

@@ -159,9 +159,9 @@ impl<'a, 'g> Scope<'a, 'g> {
                 match items.as_slice() {
                     [a, b, c] => error.add_help(format!(
                         "write `[{}, {}, {}]` for a vector",
-                        a.to_source(),
-                        b.to_source(),
-                        c.to_source()
+                        a.short_source_text(),
+                        b.short_source_text(),
+                        c.short_source_text()
                     )),
                     _ => error.add_help(VECTOR_SYNTAX),
                 };

@@ -3,7 +3,7 @@
 
 use super::call::Call;
 use super::expression::sum_by_axes;
-use super::functions::length;
+use super::functions::hypotenuse;
 use super::scope::{Scope, Value};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Function, air};
@@ -112,12 +112,12 @@ impl<'g> Scope<'_, 'g> {
         let parts =
             [self.resolve_scalar(ahead, cx), self.resolve_scalar(aside, cx), self.resolve_scalar(below, cx)];
         let [ahead, aside, below] = [parts[0]?, parts[1]?, parts[2]?];
-        let plane = length(forward, down);
+        let plane = hypotenuse(forward, down);
         let (cosine, sine) = (forward / plane, down / plane);
         // Components along the velocity's projection onto the plane of symmetry, and to the right.
         let (along, across) = match of_wind {
             true => {
-                let speed = length(plane, right);
+                let speed = hypotenuse(plane, right);
                 let (straight, slip) = (plane / speed, right / speed);
                 (ahead * straight - aside * slip, ahead * slip + aside * straight)
             }
@@ -144,11 +144,11 @@ impl<'g> Scope<'_, 'g> {
                 .add_help("as in `angle_of_attack(body, velocity)`");
             return None;
         }
-        let mut along = |k: usize| {
+        let mut component_along_body_axis = |k: usize| {
             let (_, both) = self.resolve_in_common_axes(&[vector, &body_axis_expression(body, k)], cx)?;
             Some(both[0].dot(both[1]))
         };
-        Some([along(0)?, along(1)?, along(2)?])
+        Some([component_along_body_axis(0)?, component_along_body_axis(1)?, component_along_body_axis(2)?])
     }
 }
 

@@ -10,13 +10,13 @@ use super::holders::{MovingPlacement, connections_of_body, name_of_connection};
 use super::output::output_axes;
 use super::power::power_of_input;
 use super::reaction::{RELEASED, ReleasedJoints};
-use super::scope::{AllowedQuantities, Context, Placed, PlacedElementKind, Scope, Terms};
+use super::scope::{AllowedQuantities, Context, Placed, PlacedElementKind, Scope, VectorTerms};
 use crate::diag::Diagnostics;
 use crate::expr::eval::eval;
 use crate::expr::sample::sample_of_symbol;
 use crate::expr::{Expr, Function, Symbol, Vec3};
 use crate::kinematics::{random_configuration, time_derivative, velocity_gradient};
-use crate::mechanism::{Diagram, LinkId, Model, Origin, OutputExpression, Pose, Quantity};
+use crate::mechanism::{ActionOrigin, FreeBodyDiagram, LinkId, Model, OutputExpression, Pose, Quantity};
 use crate::syntax::{self, Definition, Endpoint, ExprKind, JointKind, Target};
 use std::collections::BTreeMap;
 
@@ -48,7 +48,7 @@ struct FreedBody<'s, 'a, 'g> {
 }
 
 /// An action: name, origin, point of action, and wrench.
-type DiagramAction<'g> = (String, Origin, Option<Terms<'g>>, ActionWrench<'g>);
+type DiagramAction<'g> = (String, ActionOrigin, Option<VectorTerms<'g>>, ActionWrench<'g>);
 
 /// Returns the generalized forces of an element on the coordinates of released joints.
 pub fn forces_on_released_joints<'g>(
@@ -60,35 +60,35 @@ pub fn forces_on_released_joints<'g>(
     let open = RELEASED * release.joints.len();
     let first = m.nv() - open;
     let mut forces = vec![m.graph.zero(); open];
-    let mut add = |rate: Expr<'g>, force: Expr<'g>| {
+    let mut add_generalized_force = |rate: Expr<'g>, force: Expr<'g>| {
         for (k, d) in velocity_gradient(rate).into_iter().filter(|(k, _)| *k >= first) {
             forces[k - first] += force * d;
         }
     };
     let acceleration_expression = |k: usize| Quantity::Acceleration(k).expr(m.graph);
     for load in &applied.loads {
-        add(load.rate, load.force);
+        add_generalized_force(load.rate, load.force);
     }
     for energy in &applied.potentials {
-        add(time_derivative(m.configuration_space(), *energy), -m.graph.one());
+        add_generalized_force(time_derivative(m.configuration_space(), *energy), -m.graph.one());
     }
     for function in &applied.dissipations {
-        add(*function, -m.graph.one());
+        add_generalized_force(*function, -m.graph.one());
     }
     for element in &applied.inertances {
         let gradient = velocity_gradient(element.rate);
         let start = time_derivative(m.configuration_space(), element.rate);
         let change = gradient.into_iter().fold(start, |sum, (k, d)| sum + d * acceleration_expression(k));
-        add(element.rate, -(element.inertance * change));
+        add_generalized_force(element.rate, -(element.inertance * change));
     }
     for force in &applied.acceleration_forces {
         let value = force
             .factors
             .iter()
             .fold(m.graph.zero(), |sum, (k, factor)| sum + *factor * acceleration_expression(*k));
-        add(force.rate, value);
+        add_generalized_force(force.rate, value);
     }
-    add(power_of_input(scope, m, name), m.graph.one());
+    add_generalized_force(power_of_input(scope, m, name), m.graph.one());
     forces
 }
 
@@ -104,7 +104,7 @@ pub fn resolve_free_body_diagram<'g>(
     let axes = output_axes(scope, output, cx)?;
     let holders = connections_of_body(scope, placements, &name);
     let released: Vec<usize> = holders.iter().map(|(number, _)| *number).collect();
-    let empty = Diagram { body: name.clone(), actions: Vec::new(), released };
+    let empty = FreeBodyDiagram { body: name.clone(), actions: Vec::new(), released };
     let output_value =
         |values, diagram| OutputExpression { name: output.name.text.clone(), values, diagram: Some(diagram) };
     let Some(release) = release else { return Some(output_value(Vec::new(), empty)) };
@@ -124,12 +124,14 @@ pub fn resolve_free_body_diagram<'g>(
     for (name, origin, place, wrench) in all {
         let zero = Vec3::zero(scope.graph);
         let point = place.map_or(zero, |terms| body.arm_from_center(&terms));
-        values.extend([point, wrench.force, wrench.torque].map(|v| rotation.to_child(v).0).concat());
+        values.extend(
+            [point, wrench.force, wrench.torque].map(|v| rotation.vector_in_child_axes(v).0).concat(),
+        );
         actions.push((name, origin));
     }
     Some(output_value(
         scope.with_released_coordinates_zero(&values),
-        Diagram { body: body.name, actions, ..empty },
+        FreeBodyDiagram { body: body.name, actions, ..empty },
     ))
 }
 
@@ -211,7 +213,7 @@ fn first_released_link(scope: &Scope<'_, '_>, index: usize) -> Option<LinkId> {
 
 impl<'g> FreedBody<'_, '_, 'g> {
     /// Returns a position relative to the centre of mass, in the axes of the result's link.
-    fn arm_from_center(&self, place: &Terms<'g>) -> Vec3<'g> {
+    fn arm_from_center(&self, place: &VectorTerms<'g>) -> Vec3<'g> {
         let kinematics = &self.scope.kinematics;
         let mut terms = place.clone();
         let center = kinematics.position_of_point(self.center.link, self.center.pose.translation);
@@ -222,10 +224,10 @@ impl<'g> FreedBody<'_, '_, 'g> {
             }
         }
         terms.retain(|(_, v)| !v.is_zero());
-        kinematics.resolve(&terms, self.axes.0, Vec3::zero(self.scope.graph))
+        kinematics.components_in_link_axes(&terms, self.axes.0, Vec3::zero(self.scope.graph))
     }
 
-    fn position_of_placed(&self, placed: &Placed<'g>) -> Terms<'g> {
+    fn position_of_placed(&self, placed: &Placed<'g>) -> VectorTerms<'g> {
         self.scope.kinematics.position_of_point(placed.link, placed.pose.translation)
     }
 
@@ -235,8 +237,8 @@ impl<'g> FreedBody<'_, '_, 'g> {
         if weight.is_zero() {
             return None;
         }
-        let force = self.scope.kinematics.resolve(&vec![(None, weight)], self.axes.0, zero);
-        Some(("gravity".to_string(), Origin::Gravity, None, ActionWrench { force, torque: zero }))
+        let force = self.scope.kinematics.components_in_link_axes(&vec![(None, weight)], self.axes.0, zero);
+        Some(("gravity".to_string(), ActionOrigin::Gravity, None, ActionWrench { force, torque: zero }))
     }
 
     /// Returns the wrench on the body from generalized forces on the coordinates of released joints.
@@ -271,8 +273,8 @@ impl<'g> FreedBody<'_, '_, 'g> {
         }
         let frame = self.release.frames.get(self.release.joints.get(index)?)?;
         let components_in_result_axes = |v: Vec3<'g>| {
-            let terms = vec![(frame.link, frame.pose.rotation.to_parent(v))];
-            self.scope.kinematics.resolve(&terms, self.axes.0, zero)
+            let terms = vec![(frame.link, frame.pose.rotation.vector_in_parent_axes(v))];
+            self.scope.kinematics.components_in_link_axes(&terms, self.axes.0, zero)
         };
         let (force, torque) = (components_in_result_axes(force), components_in_result_axes(torque));
         let arm = self.arm_from_center(&self.position_of_placed(frame));
@@ -288,7 +290,7 @@ impl<'g> FreedBody<'_, '_, 'g> {
                 continue;
             }
             let is_input = self.model.inputs.iter().any(|(input, _)| input == name);
-            let origin = if is_input { Origin::Input } else { Origin::Element };
+            let origin = if is_input { ActionOrigin::Input } else { ActionOrigin::Element };
             let place = self.action_point_of_element(name);
             let wrench = match &place {
                 // A force through its point of action has no torque about that point.
@@ -301,20 +303,20 @@ impl<'g> FreedBody<'_, '_, 'g> {
     }
 
     /// Returns the point of the body at which an element acts, if it acts at a single point.
-    fn action_point_of_element(&self, name: &str) -> Option<Terms<'g>> {
+    fn action_point_of_element(&self, name: &str) -> Option<VectorTerms<'g>> {
         let action = self.scope.description.actions.iter().find(|action| action.name.text == name)?;
-        let mut unread = Diagnostics::discarded_diagnostics();
-        let mut here = |e: &syntax::Expr| {
+        let mut unread = Diagnostics::unprinted_diagnostics();
+        let mut position_if_on_body = |e: &syntax::Expr| {
             let placed = self.scope.placement_of_moving_point(e, &mut unread)?;
             (placed.link == self.link).then(|| self.position_of_placed(&placed))
         };
         let row = action.kind.row();
         match &action.on {
             _ if !row.at_point => None,
-            Target::Between(a, b) => here(a).or_else(|| here(b)),
+            Target::Between(a, b) => position_if_on_body(a).or_else(|| position_if_on_body(b)),
             Target::On(e) if row.on_bodies => match &e.kind {
                 ExprKind::Name(name) if self.scope.joint_coordinates(name).is_some() => None,
-                ExprKind::Name(_) | ExprKind::Method(..) => here(e),
+                ExprKind::Name(_) | ExprKind::Method(..) => position_if_on_body(e),
                 _ => None,
             },
             Target::On(_) => None,
@@ -330,16 +332,16 @@ impl<'g> FreedBody<'_, '_, 'g> {
             let (name, origin) =
                 match (self.scope.description.joints.get(j), name_of_connection(self.scope.description, j)) {
                     (Some(joint), _) if joint.kind == JointKind::Free => continue,
-                    (Some(joint), _) => (joint.name.text.clone(), Origin::Joint),
-                    (None, Some(name)) => (format!("{}.place", name.text), Origin::Constraint),
+                    (Some(joint), _) => (joint.name.text.clone(), ActionOrigin::Joint),
+                    (None, Some(name)) => (format!("{}.place", name.text), ActionOrigin::Constraint),
                     (None, None) => continue,
                 };
             let Some(frame) = self.release.frames.get(&j) else { continue };
             let sign = g.num(if *holds { 1.0 } else { -1.0 });
             let reaction_vector_in_axes = |k: usize| {
                 let v = Vec3([0, 1, 2].map(|i| Quantity::Reaction(RELEASED * j + k + i).expr(g) * sign));
-                let terms = vec![(frame.link, frame.pose.rotation.to_parent(v))];
-                self.scope.kinematics.resolve(&terms, self.axes.0, Vec3::zero(g))
+                let terms = vec![(frame.link, frame.pose.rotation.vector_in_parent_axes(v))];
+                self.scope.kinematics.components_in_link_axes(&terms, self.axes.0, Vec3::zero(g))
             };
             let wrench =
                 ActionWrench { force: reaction_vector_in_axes(0), torque: reaction_vector_in_axes(3) };
@@ -380,15 +382,15 @@ impl<'g> FreedBody<'_, '_, 'g> {
             let joint = self.scope.description.joints.iter().find(|joint| joint.name.text == name);
             if let Some(joint) = joint {
                 let place = self.joint_end_position([&joint.parent, &joint.child]);
-                let wrench = self.wrench_at_point(place.as_ref(), wrench);
-                return Some((name, Origin::Joint, place, wrench));
+                let wrench = self.move_wrench_to_point(place.as_ref(), wrench);
+                return Some((name, ActionOrigin::Joint, place, wrench));
             }
             let place = self.release.contact_points.get(&name).cloned();
             let wrench = match &place {
                 Some(_) => ActionWrench { torque: Vec3::zero(g), ..wrench },
                 None => wrench,
             };
-            Some((name, Origin::Constraint, place, wrench))
+            Some((name, ActionOrigin::Constraint, place, wrench))
         };
         by_name.into_iter().filter_map(diagram_action_of_element).collect()
     }
@@ -416,15 +418,15 @@ impl<'g> FreedBody<'_, '_, 'g> {
                     Some(_) => ActionWrench { torque: Vec3::zero(g), ..wrench },
                     None => wrench,
                 };
-                all.push((contact.name.clone(), Origin::Contact, place, wrench));
+                all.push((contact.name.clone(), ActionOrigin::Contact, place, wrench));
             }
         }
         all
     }
 
     /// Returns the position of the end of a joint that belongs to the body.
-    fn joint_end_position(&self, ends: [&Endpoint; 2]) -> Option<Terms<'g>> {
-        let mut unread = Diagnostics::discarded_diagnostics();
+    fn joint_end_position(&self, ends: [&Endpoint; 2]) -> Option<VectorTerms<'g>> {
+        let mut unread = Diagnostics::unprinted_diagnostics();
         ends.into_iter().find_map(|end| {
             let (link, pose) = self.scope.placement_of_joint_parent(&end.body, &mut unread)?;
             let on_body = self.scope.frame_of_endpoint(end, &mut unread)?;
@@ -434,7 +436,7 @@ impl<'g> FreedBody<'_, '_, 'g> {
     }
 
     /// Moves a wrench from the centre of mass of the body to a given point.
-    fn wrench_at_point(&self, place: Option<&Terms<'g>>, w: ActionWrench<'g>) -> ActionWrench<'g> {
+    fn move_wrench_to_point(&self, place: Option<&VectorTerms<'g>>, w: ActionWrench<'g>) -> ActionWrench<'g> {
         let Some(place) = place else { return w };
         let arm = self.arm_from_center(place);
         ActionWrench { torque: w.torque - arm.cross(w.force), ..w }
@@ -450,12 +452,13 @@ impl<'g> FreedBody<'_, '_, 'g> {
         (0..SAMPLES).any(|seed| {
             // Sampled quaternions have unit length, because terms may cancel only for rotations.
             let q = random_configuration(self.model, seed);
-            let value_of_symbol = |s: Symbol| match Quantity::from_symbol(s) {
+            let sample_value_of_symbol = |s: Symbol| match Quantity::from_symbol(s) {
                 Quantity::Configuration(k) => q[k],
                 _ => sample_of_symbol(s, seed),
             };
-            let largest_magnitude =
-                |e: &[Expr<'g>]| eval(e, &value_of_symbol).iter().fold(0.0_f64, |size, x| size.max(x.abs()));
+            let largest_magnitude = |e: &[Expr<'g>]| {
+                eval(e, &sample_value_of_symbol).iter().fold(0.0_f64, |size, x| size.max(x.abs()))
+            };
             let (residual, size) = (largest_magnitude(&all), largest_magnitude(forces));
             // Values that are not finite are inconclusive; they count as nonzero.
             !residual.is_finite() || residual > ROUNDING * size

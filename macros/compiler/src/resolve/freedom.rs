@@ -2,7 +2,7 @@
 
 use super::contact;
 use crate::diag::Diagnostics;
-use crate::kinematics::{Rows, mobility, redundancy};
+use crate::kinematics::{CompiledConstraintRows, mobility, redundancy};
 use crate::mechanism::Model;
 use crate::syntax::{ExprKind, Formulation};
 
@@ -12,17 +12,17 @@ pub fn remove_redundancy_and_check_mobility(
     formulation: &Formulation,
     cx: &mut Diagnostics,
 ) {
-    let mut rows = Rows::new(model);
+    let mut rows = CompiledConstraintRows::new(model);
     let constant = redundancy::velocity_independent_row_flags(model, &rows);
     redundancy::report_violated_constant_rows(model, &constant, cx);
     if !cx.is_empty() {
         return;
     }
-    let samples = mobility::sample_configurations(model, &rows, cx);
+    let samples = mobility::sample_feasible_configurations(model, &rows, cx);
     let before = model.constraints.clone();
     if redundancy::prune_redundant_rows(model, &rows, &constant, &samples) {
         contact::report_undetermined_normal_forces(&before, &model.redundant, cx);
-        rows = Rows::new(model);
+        rows = CompiledConstraintRows::new(model);
     }
     model.freedom = mobility::degrees_of_freedom(model, &rows, &samples, cx);
     apply_independent_velocities(model, formulation, (&rows, &samples), cx);
@@ -32,7 +32,7 @@ pub fn remove_redundancy_and_check_mobility(
 fn apply_independent_velocities(
     model: &mut Model<'_>,
     formulation: &Formulation,
-    (rows, samples): (&Rows<'_>, &[mobility::Sample]),
+    (rows, samples): (&CompiledConstraintRows<'_>, &[mobility::ConfigurationSample]),
     cx: &mut Diagnostics,
 ) {
     let Formulation::Speeds(names, place) = formulation else { return };
@@ -72,7 +72,7 @@ fn apply_independent_velocities(
     if !cx.is_empty() {
         return;
     }
-    model.dependent = mobility::constraint_pivot_velocities(model, rows, samples, &independent);
+    model.dependent = mobility::pivot_velocity_per_constraint(model, rows, samples, &independent);
     if model.dependent.is_none() {
         let diagnostic =
             cx.report_error(place.clone(), "the independent speeds do not determine the other velocities");

@@ -19,7 +19,7 @@ impl<'g> Scope<'_, 'g> {
         cx: &mut Diagnostics,
     ) -> Option<Value<'g>> {
         if let Some(Callable::Elementary(f)) = callee.id {
-            return self.resolve_elementary(f, callee, arguments, cx);
+            return self.resolve_elementary_function(f, callee, arguments, cx);
         }
         if let Some(k) = self.description.tables.iter().position(|table| table.name.text == callee.text) {
             return self.resolve_table_lookup(k, callee, arguments, cx);
@@ -28,7 +28,7 @@ impl<'g> Scope<'_, 'g> {
             Some(Callable::Function(id)) => {
                 self.resolve_function_call(&Call { id, place: &callee.place, arguments }, cx)
             }
-            Some(Callable::If) => self.resolve_pieces(arguments, cx).map(Value::Scalar),
+            Some(Callable::If) => self.resolve_piecewise_law(arguments, cx).map(Value::Scalar),
             other => {
                 let solid = if let Some(Callable::Solid(solid)) = other { Some(solid) } else { None };
                 self.report_unknown_function(callee, solid, cx);
@@ -70,7 +70,7 @@ impl<'g> Scope<'_, 'g> {
             }
             F::Norm => {
                 let (_, v) = self.vector_argument(call, "the magnitude of a scalar is `abs(a)`", cx)?;
-                Some(Value::Scalar(v.length()))
+                Some(Value::Scalar(v.regularised_norm()))
             }
             F::Unit => {
                 let (axes, v) = self.vector_argument(call, "a scalar has no direction", cx)?;
@@ -123,14 +123,14 @@ impl<'g> Scope<'_, 'g> {
                 self.resolve_aerodynamic_angle(call, cx, |[forward, _, down]| down.atan2(forward))
             }
             F::Sideslip => {
-                self.resolve_aerodynamic_angle(call, cx, |[f, right, d]| right.atan2(length(f, d)))
+                self.resolve_aerodynamic_angle(call, cx, |[f, right, d]| right.atan2(hypotenuse(f, d)))
             }
             F::Course => self.resolve_velocity_angle(call, cx, |[north, east, _]| east.atan2(north)),
             F::FlightPath => {
-                self.resolve_velocity_angle(call, cx, |[n, e, down]| (-down).atan2(length(n, e)))
+                self.resolve_velocity_angle(call, cx, |[n, e, down]| (-down).atan2(hypotenuse(n, e)))
             }
             F::Heading => self.attitude_angle(call, cx, |[north, east, _]| east.atan2(north)),
-            F::Elevation => self.attitude_angle(call, cx, |[n, e, down]| (-down).atan2(length(n, e))),
+            F::Elevation => self.attitude_angle(call, cx, |[n, e, down]| (-down).atan2(hypotenuse(n, e))),
             F::Bank => self.resolve_bank_angle(call, cx),
             F::StabilityAxes => self.vector_from_flight_axes(call, false, cx),
             F::WindAxes => self.vector_from_flight_axes(call, true, cx),
@@ -149,7 +149,7 @@ impl<'g> Scope<'_, 'g> {
     }
 
     /// Returns the value of an elementary function of a number or an angle.
-    fn resolve_elementary(
+    fn resolve_elementary_function(
         &self,
         f: Function,
         callee: &Callee,
@@ -188,7 +188,7 @@ impl<'g> Scope<'_, 'g> {
     fn vector_argument(&self, call: &Call<'_>, help: &str, cx: &mut Diagnostics) -> Option<(Axes, Vec3<'g>)> {
         let [a] = call.take_arguments(cx)?;
         let vector = self.resolve_vector_with_help(a, help, cx)?;
-        let (axes, v) = self.in_common_axes(vec![(a, vector)], cx)?;
+        let (axes, v) = self.express_in_common_axes(vec![(a, vector)], cx)?;
         Some((axes, v[0]))
     }
 
@@ -259,6 +259,6 @@ fn check_power_defined(place: &Place, base: Expr<'_>, exponent: Expr<'_>, cx: &m
 }
 
 /// Returns the length of a vector with two perpendicular components.
-pub fn length<'g>(a: Expr<'g>, b: Expr<'g>) -> Expr<'g> {
+pub fn hypotenuse<'g>(a: Expr<'g>, b: Expr<'g>) -> Expr<'g> {
     (a.square() + b.square()).sqrt()
 }

@@ -32,7 +32,7 @@ pub type MovingPlacement = (usize, Option<LinkId>);
 /// with free-body diagrams.
 pub fn is_fixed_in_frame(d: &Description, number: usize) -> bool {
     let is_placed_on_body = |e: &syntax::Expr| {
-        let base = tree::leading_body_name(e);
+        let base = tree::body_name_of_position(e);
         base.is_some_and(|base| base != GROUND && d.frames.iter().all(|frame| frame.name.text != base))
     };
     let body = number.checked_sub(d.joints.len()).and_then(|k| d.bodies.get(k));
@@ -55,7 +55,7 @@ fn body_carrying_point<'b>(d: &'b Description, placements: &[MovingPlacement], n
     let carrier_name = |name: &str| {
         let point = d.points.iter().find(|p| p.name.text == name).and_then(|p| p.on.as_ref());
         let particle = d.particles.iter().find(|p| p.name.text == name).and_then(|p| p.at.as_ref());
-        tree::leading_body_name(point.or(particle.filter(|_| !has_moving_placement(name)))?)
+        tree::body_name_of_position(point.or(particle.filter(|_| !has_moving_placement(name)))?)
     };
     (0..=d.points.len() + d.particles.len()).fold(name, |current, _| carrier_name(current).unwrap_or(current))
 }
@@ -68,7 +68,7 @@ pub fn connections_of_body(
     body: &str,
 ) -> Vec<(usize, bool)> {
     let d = scope.description;
-    let closing = tree::loop_closing_joints(d);
+    let closing = tree::loop_closing_flags(d);
     let joints = d.joints.iter().enumerate().filter_map(|(j, joint)| {
         let holds = joint.child.body.text == body;
         let joins = holds || body_carrying_point(d, placements, &joint.parent.body.text) == body;

@@ -3,7 +3,7 @@
 use super::scope::{Scope, Value};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{Expr, Sym3, Vec3};
-use crate::language::{Argument, Callable, Method, Solid};
+use crate::language::{Argument, BodyOrInertiaMethod, Callable, Solid};
 use crate::mechanism::Rule;
 use crate::syntax::{self, BinaryOp, Callee, ExprKind, words};
 
@@ -18,7 +18,7 @@ const MIN_GYRATION_SQUARED: f64 = 1e-16;
 const TOLERANCE: f64 = 1e-6;
 
 /// Operation of an inertia expression on the inertia to its left.
-enum Operation<'a> {
+enum InertiaOperation<'a> {
     Add(&'a syntax::Expr),
     Rotate(&'a [syntax::Expr]),
 }
@@ -32,9 +32,9 @@ impl<'g> Scope<'_, 'g> {
         let mut first = e;
         loop {
             let (inner, operation) = match &first.kind {
-                ExprKind::Binary(BinaryOp::Add, left, right, _) => (left, Operation::Add(right)),
-                ExprKind::Method(inner, method, steps) if method.id == Some(Method::Rotated) => {
-                    (inner, Operation::Rotate(steps))
+                ExprKind::Binary(BinaryOp::Add, left, right, _) => (left, InertiaOperation::Add(right)),
+                ExprKind::Method(inner, method, steps) if method.id == Some(BodyOrInertiaMethod::Rotated) => {
+                    (inner, InertiaOperation::Rotate(steps))
                 }
                 _ => break,
             };
@@ -44,13 +44,15 @@ impl<'g> Scope<'_, 'g> {
         let mut inertia = self.resolve_single_solid_inertia(first, cx);
         for operation in operations.into_iter().rev() {
             inertia = match operation {
-                Operation::Add(right) => {
+                InertiaOperation::Add(right) => {
                     let right = self.resolve_inertia(right, cx);
                     inertia.zip(right).map(|(left, right)| left + right)
                 }
-                Operation::Rotate(steps) => {
+                InertiaOperation::Rotate(steps) => {
                     let rotation = self.resolve_rotation(steps, cx);
-                    inertia.zip(rotation).map(|(inertia, rotation)| rotation.sym_to_parent(inertia))
+                    inertia
+                        .zip(rotation)
+                        .map(|(inertia, rotation)| rotation.symmetric_tensor_in_parent_axes(inertia))
                 }
             };
         }
@@ -80,7 +82,7 @@ impl<'g> Scope<'_, 'g> {
                 let error = cx.report_error(e.place.clone(), format!("expected an inertia{found}"));
                 match kind {
                     ExprKind::Tuple(items) if items.len() == 3 => {
-                        let items: Vec<String> = items.iter().map(syntax::Expr::to_source).collect();
+                        let items: Vec<String> = items.iter().map(syntax::Expr::short_source_text).collect();
                         error.add_help(format!("write `diagonal({})`", items.join(", ")));
                     }
                     ExprKind::Number(n) => {
@@ -164,7 +166,7 @@ impl<'g> Scope<'_, 'g> {
         let (mut numbers, mut axis, mut complete) = (Vec::new(), None, true);
         for (e, argument) in arguments.iter().zip(row.arguments) {
             if argument.kind.is_direction() {
-                axis = Some(self.unit_vector(e, false, cx)?);
+                axis = Some(self.resolve_unit_vector(e, false, cx)?);
                 continue;
             }
             match self.resolve_scalar(e, cx) {
@@ -192,7 +194,7 @@ impl<'g> Scope<'_, 'g> {
         cx: &mut Diagnostics,
     ) -> bool {
         for (Argument { name, kind }, argument) in solid.row().arguments.iter().zip(arguments) {
-            let mut silent = Diagnostics::discarded_diagnostics();
+            let mut silent = Diagnostics::unprinted_diagnostics();
             let found = match (self.resolve_value(argument, &mut silent), kind.is_direction()) {
                 (Some(Value::Vector(_)), false) => "a vector",
                 (Some(Value::Scalar(s)), true) if !s.is_zero() => "a scalar",

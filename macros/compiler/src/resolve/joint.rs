@@ -5,27 +5,29 @@ use super::elementary::ElementaryMotion;
 use super::scope::Scope;
 use crate::diag::{Diagnostics, Place};
 use crate::expr::eval::eval_one;
-use crate::expr::sample::{always_equals, sample_of_symbol};
+use crate::expr::sample::{always_equals_number, sample_of_symbol};
 use crate::expr::{Expr, Graph, Vec3};
 use crate::kinematics::directions_in_plane;
 use crate::language::elements::{DrawnAxis, JointTypeCoordinates};
-use crate::mechanism::{Chart, Coordinate, InQ, InV, PieceKind};
+use crate::mechanism::{Chart, Coordinate, InQ, InV, PieceShape};
 use crate::syntax::{self, Joint, JointKind};
 
-/// Returns the coordinate charts of a joint whose entries begin at `q` and `v`: one for each plain coordinate,
-/// or one for the whole of a ball or free joint.
+/// Returns the coordinate charts of a joint whose entries begin at `q` and `v`: one for each plain
+/// coordinate, or one for the whole of a ball or free joint.
 pub fn charts_of_joint(kind: JointKind, (q, v): (InQ, InV), along: usize) -> Vec<Chart> {
     match kind.row().coordinates {
         JointTypeCoordinates::Ball => vec![Chart::Ball(q, v)],
         JointTypeCoordinates::Free => vec![Chart::Free(q, v)],
         JointTypeCoordinates::Plain(_) | JointTypeCoordinates::PerAxis(_) => {
-            (0..kind.coordinate_names(along).1.len()).map(|k| Chart::Plain(q + k, v + k)).collect()
+            (0..kind.configuration_and_velocity_names(along).1.len())
+                .map(|k| Chart::Plain(q + k, v + k))
+                .collect()
         }
     }
 }
 
 /// Returns the symbol of a joint in the drawing, if it has one, and its axes, the first of which is drawn.
-pub fn joint_drawing_symbol(joint: &Joint) -> Option<(PieceKind, Option<&[syntax::Expr]>)> {
+pub fn joint_drawing_symbol(joint: &Joint) -> Option<(PieceShape, Option<&[syntax::Expr]>)> {
     let (kind, axis) = joint.kind.row().piece.clone()?;
     let axes = axis.map(|axis| match axis {
         DrawnAxis::About => joint.about.as_slice(),
@@ -83,7 +85,8 @@ impl<'g> Scope<'_, 'g> {
         axes: &[syntax::Expr],
         cx: &mut Diagnostics,
     ) -> Option<Vec<Vec3<'g>>> {
-        let found: Vec<_> = axes.iter().map(|a| self.unit_vector(a, joint.normalise_axis, cx)).collect();
+        let found: Vec<_> =
+            axes.iter().map(|a| self.resolve_unit_vector(a, joint.normalise_axis, cx)).collect();
         found.into_iter().collect()
     }
 
@@ -234,8 +237,8 @@ fn check_independent_axes(
     cx: &mut Diagnostics,
 ) -> Option<()> {
     let dependent = match axes {
-        [a, b] => a.cross(*b).0.iter().all(|c| always_equals(*c, 0.0)),
-        [a, b, c] => always_equals(a.cross(*b).dot(*c), 0.0),
+        [a, b] => a.cross(*b).0.iter().all(|c| always_equals_number(*c, 0.0)),
+        [a, b, c] => always_equals_number(a.cross(*b).dot(*c), 0.0),
         _ => false,
     };
     if let Some(last) = last.filter(|_| dependent) {

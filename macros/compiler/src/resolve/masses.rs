@@ -39,7 +39,11 @@ pub fn resolve_particle_mass<'g>(
 }
 
 /// Reports inertial parameters whose products are not finite.
-pub fn check_inertial_products_finite<'g>(scope: &Scope<'_, 'g>, model: &Model<'g>, cx: &mut Diagnostics) {
+pub fn check_products_of_inertial_parameters<'g>(
+    scope: &Scope<'_, 'g>,
+    model: &Model<'g>,
+    cx: &mut Diagnostics,
+) {
     if !cx.is_empty() {
         return;
     }

@@ -2,9 +2,9 @@
 //! their products, transposes and rates.
 
 use super::call::Call;
-use super::quantities::{vector_terms_by_link, vector_value};
+use super::quantities::{vector_terms_by_link, vector_value_from_terms};
 use super::resolved::ResolvedMatrix;
-use super::scope::{AllowedQuantities, Axes, Placed, PlacedElements, Scope, Terms, Value};
+use super::scope::{AllowedQuantities, Axes, Placed, PlacedElements, Scope, Value, VectorTerms};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{Expr, Mat3, Rotation, Vec3};
 use crate::kinematics::express_in_link_axes;
@@ -28,7 +28,8 @@ impl<'g> PlacedElements<'g> {
         link: Option<LinkId>,
         axes: &Rotation<'g>,
     ) -> Vec<Expr<'g>> {
-        let here = self.matrix_in_link_axes(m, link).rotated_to_link_axes(link, |v| axes.to_child(v));
+        let here =
+            self.matrix_in_link_axes(m, link).rotated_to_link_axes(link, |v| axes.vector_in_child_axes(v));
         (0..3).flat_map(|k| here.entries.column(k).0).collect()
     }
 }
@@ -63,7 +64,7 @@ impl<'g> Scope<'_, 'g> {
             return self.report_disallowed_matrix(&e.place, cx);
         };
         let own = ResolvedMatrix { link, entries };
-        Some(Value::Matrix(own.rotated_to_link_axes(link, |v| pose.rotation.to_parent(v))))
+        Some(Value::Matrix(own.rotated_to_link_axes(link, |v| pose.rotation.vector_in_parent_axes(v))))
     }
 
     /// Reports a matrix in a context that does not allow matrices.
@@ -151,20 +152,21 @@ impl<'g> Scope<'_, 'g> {
         let (a, b) = (self.axes_of_named_frame(a)?, self.axes_of_named_frame(b)?);
         let kinematics = &self.kinematics;
         let zero = Vec3::zero(self.graph);
-        let [a, b] = [a, b].map(|axes| axes.map(|axis| kinematics.resolve(&axis, link, zero)));
+        let [a, b] =
+            [a, b].map(|axes| axes.map(|axis| kinematics.components_in_link_axes(&axis, link, zero)));
         let entry_of_relative_rotation =
             |i: usize, j: usize| (0..3).fold(self.graph.zero(), |sum, k| sum + b[k][i] * a[k][j]);
         Some(Value::Matrix(ResolvedMatrix { link, entries: Mat3::from_fn(entry_of_relative_rotation) }))
     }
 
     /// Returns the axes of the body or frame that an expression names.
-    fn axes_of_named_frame(&self, e: &syntax::Expr) -> Option<[Terms<'g>; 3]> {
+    fn axes_of_named_frame(&self, e: &syntax::Expr) -> Option<[VectorTerms<'g>; 3]> {
         let coordinate_axis = |k: usize| Vec3::coordinate_axis(self.graph, k);
         match e.as_name()? {
             GROUND => Some([0, 1, 2].map(|k| vec![(None, coordinate_axis(k))])),
             name => {
                 let Placed { link, pose, .. } = self.placement_of_element(name)?;
-                Some([0, 1, 2].map(|k| vec![(link, pose.rotation.to_parent(coordinate_axis(k)))]))
+                Some([0, 1, 2].map(|k| vec![(link, pose.rotation.vector_in_parent_axes(coordinate_axis(k)))]))
             }
         }
     }
@@ -179,11 +181,16 @@ impl<'g> Scope<'_, 'g> {
         let bodies = self.resolve_bodies_with_mass(bodies_written, cx)?;
         let about = self.placement_of_moving_point(about, cx)?;
         let link = bodies.first().and_then(|(placed, _)| placed.link);
-        let axis_terms = |k: usize| -> Terms<'g> { vec![(link, Vec3::coordinate_axis(self.graph, k))] };
+        let terms_of_coordinate_axis =
+            |k: usize| -> VectorTerms<'g> { vec![(link, Vec3::coordinate_axis(self.graph, k))] };
         let entries = Mat3::from_fn(|i, j| {
             let (i, j) = (i.min(j), i.max(j));
             bodies.iter().fold(self.graph.zero(), |sum, body| {
-                sum + self.moment_of_inertia_about_point(body, &about, [&axis_terms(i), &axis_terms(j)])
+                sum + self.moment_of_inertia_about_point(
+                    body,
+                    &about,
+                    [&terms_of_coordinate_axis(i), &terms_of_coordinate_axis(j)],
+                )
             })
         });
         Some(Value::Matrix(ResolvedMatrix { link, entries }))
@@ -210,8 +217,12 @@ impl<'g> Scope<'_, 'g> {
                 Value::Matrix(ResolvedMatrix { entries, ..a })
             }
             (BinaryOp::Mul, Value::Matrix(m), Value::Vector(v)) => {
-                let v = kinematics.resolve(&vector_terms_by_link(v), m.link, Vec3::zero(self.graph));
-                vector_value(vec![(m.link, m.entries * v)])
+                let v = kinematics.components_in_link_axes(
+                    &vector_terms_by_link(v),
+                    m.link,
+                    Vec3::zero(self.graph),
+                );
+                vector_value_from_terms(vec![(m.link, m.entries * v)])
             }
             (BinaryOp::Mul, Value::Scalar(s), Value::Matrix(m))
             | (BinaryOp::Mul, Value::Matrix(m), Value::Scalar(s)) => Value::Matrix(m.map(|entry| entry * s)),

@@ -3,8 +3,8 @@
 //! `resolve_moment_of_inertia(body / point, direction)`, `center_of_mass((first, second) / point)`.
 
 use super::call::{Call, flatten_slashes};
-use super::quantities::vector_value;
-use super::scope::{AllowedQuantities, MassProperties, Placed, Scope, Terms, Value};
+use super::quantities::vector_value_from_terms;
+use super::scope::{AllowedQuantities, MassProperties, Placed, Scope, Value, VectorTerms};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Vec3};
 use crate::mechanism::Pose;
@@ -62,7 +62,7 @@ impl<'g> Scope<'_, 'g> {
             let (linear, w) = twist.map_or((zero, zero), |twist| (twist.linear, twist.angular));
             let center = placed.pose.transform_point(com);
             let v = linear + w.cross(center);
-            let spin = placed.pose.rotation.sym_to_parent(central) * w;
+            let spin = placed.pose.rotation.symmetric_tensor_in_parent_axes(central) * w;
             energy += (v.dot(v) * mass + w.dot(spin)) * 0.5;
             let Some(about) = &about else {
                 momenta.push((link, v * mass));
@@ -70,10 +70,14 @@ impl<'g> Scope<'_, 'g> {
             };
             let pose = Pose { translation: center, rotation: placed.pose.rotation.clone() };
             let offset = kinematics.position_between(&Placed { pose, ..placed.clone() }, about);
-            let r = kinematics.resolve(&offset, link, zero);
+            let r = kinematics.components_in_link_axes(&offset, link, zero);
             momenta.push((link, spin + r.cross(v * mass)));
         }
-        Some(if sum == SummedQuantity::Energy { Value::Scalar(energy) } else { vector_value(momenta) })
+        Some(if sum == SummedQuantity::Energy {
+            Value::Scalar(energy)
+        } else {
+            vector_value_from_terms(momenta)
+        })
     }
 
     /// Resolves `center_of_mass((first, second) / point)`: the vector from a point to the centre of mass of
@@ -105,7 +109,7 @@ impl<'g> Scope<'_, 'g> {
             let share = mass / total;
             sum.extend(offset.into_iter().map(|(link, r)| (link, r * share)));
         }
-        Some(vector_value(sum))
+        Some(vector_value_from_terms(sum))
     }
 
     /// Returns the moment `a·J a` (for one direction) or the product `a·J b` of inertia of bodies about a
@@ -131,8 +135,8 @@ impl<'g> Scope<'_, 'g> {
         }
         let bodies = self.resolve_bodies_with_mass(of, cx)?;
         let about = self.placement_of_moving_point(about, cx)?;
-        let a = self.resolve_terms(a, cx)?;
-        let b = others.first().map_or_else(|| Some(a.clone()), |b| self.resolve_terms(b, cx))?;
+        let a = self.resolve_vector_terms(a, cx)?;
+        let b = others.first().map_or_else(|| Some(a.clone()), |b| self.resolve_vector_terms(b, cx))?;
         let sum = bodies.iter().fold(self.graph.zero(), |sum, body| {
             sum + self.moment_of_inertia_about_point(body, &about, [&a, &b])
         });
@@ -144,15 +148,15 @@ impl<'g> Scope<'_, 'g> {
         &self,
         (placed, (mass, com, central)): &(Placed<'g>, MassProperties<'g>),
         about: &Placed<'g>,
-        [a, b]: [&Terms<'g>; 2],
+        [a, b]: [&VectorTerms<'g>; 2],
     ) -> Expr<'g> {
         let kinematics = &self.kinematics;
         let (link, zero) = (placed.link, Vec3::zero(self.graph));
         let pose =
             Pose { translation: placed.pose.transform_point(*com), rotation: placed.pose.rotation.clone() };
         let offset = kinematics.position_between(&Placed { pose, ..placed.clone() }, about);
-        let [a, b, r] = [a, b, &offset].map(|parts| kinematics.resolve(parts, link, zero));
-        let central = placed.pose.rotation.sym_to_parent(*central);
+        let [a, b, r] = [a, b, &offset].map(|parts| kinematics.components_in_link_axes(parts, link, zero));
+        let central = placed.pose.rotation.symmetric_tensor_in_parent_axes(*central);
         let shift = (r.dot(r) * a.dot(b) - a.dot(r) * r.dot(b)) * *mass;
         a.dot(central * b) + shift
     }
@@ -175,8 +179,11 @@ impl<'g> Scope<'_, 'g> {
             items[..k].iter().any(|before| before.as_name().is_some_and(|n| items[k].as_name() == Some(n)))
         };
         if let Some(k) = (0..items.len()).find(|k| is_repeated_name(*k)) {
-            cx.report_error(items[k].place.clone(), format!("`{}` is given twice", items[k].to_source()))
-                .add_help("name each body once");
+            cx.report_error(
+                items[k].place.clone(),
+                format!("`{}` is given twice", items[k].short_source_text()),
+            )
+            .add_help("name each body once");
             return None;
         }
         let all: Vec<_> = items.iter().map(|item| self.resolve_body_with_mass(item, cx)).collect();

@@ -176,7 +176,7 @@ impl<'g> Scope<'_, 'g> {
     pub fn vector_in_context_axes(&self, v: Vec3<'g>) -> Value<'g> {
         Value::Vector(vec![match &self.context.borrow().axes {
             None => (Axes::Own, v),
-            Some((link, pose)) => (Axes::Link(*link), pose.rotation.to_parent(v)),
+            Some((link, pose)) => (Axes::Link(*link), pose.rotation.vector_in_parent_axes(v)),
         }])
     }
 
@@ -195,7 +195,9 @@ impl<'g> Scope<'_, 'g> {
             return Some(Value::Vector(vec![(Axes::Link(None), v)]));
         }
         match self.placement_of_element(name) {
-            Some(p) => Some(Value::Vector(vec![(Axes::Link(p.link), p.pose.rotation.to_parent(v))])),
+            Some(p) => {
+                Some(Value::Vector(vec![(Axes::Link(p.link), p.pose.rotation.vector_in_parent_axes(v))]))
+            }
             None => {
                 cx.report_error(place.clone(), format!("`{name}` has no placement"));
                 None

@@ -46,7 +46,7 @@ impl CoordinateNumbering {
                 if !joint.initial.is_empty() {
                     all.initial.push((q, joint.initial.clone()));
                 }
-                let (names_q, names_v) = joint.kind.coordinate_names(joint.along.len());
+                let (names_q, names_v) = joint.kind.configuration_and_velocity_names(joint.along.len());
                 for name in &names_q {
                     all.configuration.push(full_name(&joint.name.text, name));
                 }

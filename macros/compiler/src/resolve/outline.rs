@@ -7,7 +7,7 @@ use super::joint::full_name;
 use crate::diag::Diagnostics;
 use crate::language::names::TIME;
 use crate::language::{Callable, FunctionDependence, FunctionId};
-use crate::mechanism::{Diagram, UsedQuantities};
+use crate::mechanism::{FreeBodyDiagram, UsedQuantities};
 use crate::syntax::{
     Action, Callee, ConstraintKind, Definition, Description, Expr, ExprKind, GROUND, Joint, JointKind, Key,
     Rank,
@@ -35,7 +35,7 @@ pub struct Outline {
     /// Whether some of the constraints are slipping contacts.
     pub slipping: bool,
     /// Names of free-body diagrams, with their bodies; their actions are unknown.
-    pub diagrams: Vec<(String, Diagram)>,
+    pub diagrams: Vec<(String, FreeBodyDiagram)>,
     /// All outputs other than free-body diagrams, in order.
     pub outputs: Vec<OutputInterface>,
 }
@@ -69,7 +69,7 @@ pub fn outline_of_description(d: &Description) -> Outline {
                 uses.inputs && (uses.velocities || names_in_expression(e).contains("speed"))
             })
         }),
-        constrained: !d.constraints.is_empty() || super::tree::loop_closing_joints(d).contains(&true),
+        constrained: !d.constraints.is_empty() || super::tree::loop_closing_flags(d).contains(&true),
         slipping: d.constraints.iter().any(|c| matches!(c.kind, ConstraintKind::Slipping)),
         diagrams: d.outputs.iter().filter_map(free_body_diagram_of_output).collect(),
         outputs: d.outputs.iter().filter_map(|output| outline_of_output(d, output)).collect(),
@@ -84,7 +84,7 @@ pub fn outline_of_description(d: &Description) -> Outline {
 /// Returns the names of the entries of `q`, `v` and `u`.
 fn state_and_input_names(d: &Description) -> (Vec<String>, Vec<String>, Vec<String>) {
     let (mut q, mut v, mut u): (Vec<String>, Vec<String>, Vec<String>) = Default::default();
-    let closing = super::tree::loop_closing_joints(d);
+    let closing = super::tree::loop_closing_flags(d);
     let solved = super::closed_form::find_closed_form_loops(d, &closing, &mut Diagnostics::new());
     for j in 0..=d.joints.len() {
         let free = d.coordinates.iter().filter(|c| c.joints_before == j).map(|c| c.name.text.clone());
@@ -94,7 +94,7 @@ fn state_and_input_names(d: &Description) -> (Vec<String>, Vec<String>, Vec<Stri
         let own = closing.get(j) == Some(&false) && solved.iter().all(|e| !e.sides.contains(&j));
         let has_own_coordinates = |joint: &&Joint| joint.mimic.is_none() && own;
         let Some(joint) = d.joints.get(j).filter(has_own_coordinates) else { continue };
-        let (names_q, names_v) = joint.kind.coordinate_names(joint.along.len());
+        let (names_q, names_v) = joint.kind.configuration_and_velocity_names(joint.along.len());
         q.extend(names_q.iter().map(|n| full_name(&joint.name.text, n)));
         v.extend(names_v.iter().map(|n| full_name(&joint.name.text, n)));
         u.extend(joint.driven.then(|| joint.name.text.clone()));
@@ -148,15 +148,17 @@ fn outline_of_output(d: &Description, output: &Definition) -> Option<OutputInter
     })
 }
 
-fn free_body_diagram_of_output(output: &Definition) -> Option<(String, Diagram)> {
+fn free_body_diagram_of_output(output: &Definition) -> Option<(String, FreeBodyDiagram)> {
     let is_one = output.rank == Rank::FreeBody;
     let body = output.value.as_name().unwrap_or_default().to_string();
-    is_one.then(|| (output.name.text.clone(), Diagram { body, actions: Vec::new(), released: Vec::new() }))
+    is_one.then(|| {
+        (output.name.text.clone(), FreeBodyDiagram { body, actions: Vec::new(), released: Vec::new() })
+    })
 }
 
 /// Returns the value or the law of a force element.
 fn laws_of_action(action: &Action) -> impl Iterator<Item = &Expr> {
-    action.written_law().map(|(_, e)| e).into_iter().chain(action.get(Key::Value))
+    action.written_law().map(|(_, e)| e).into_iter().chain(action.expression_of_key(Key::Value))
 }
 
 /// Returns the quantities on which an expression depends, according to the table of functions.

@@ -57,10 +57,10 @@ fn resolve_output_expressions<'g>(
         let (link, pose) = output_axes(scope, output, cx)?;
         return Some(scope.kinematics.matrix_entries(found?, link, &pose.rotation));
     }
-    let terms = scope.call_in_context(context, |scope| scope.resolve_terms(&output.value, cx));
+    let terms = scope.call_in_context(context, |scope| scope.resolve_vector_terms(&output.value, cx));
     let (link, pose) = output_axes(scope, output, cx)?;
-    let v = scope.kinematics.resolve(&terms?, link, Vec3::zero(scope.graph));
-    Some(pose.rotation.to_child(v).0.to_vec())
+    let v = scope.kinematics.components_in_link_axes(&terms?, link, Vec3::zero(scope.graph));
+    Some(pose.rotation.vector_in_child_axes(v).0.to_vec())
 }
 
 /// Returns the link and the pose of the axes in which the components of an output are resolved.

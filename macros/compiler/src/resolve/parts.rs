@@ -21,9 +21,9 @@ use super::terms::{report_definition_errors, resolve_dissipation, resolve_potent
 use crate::diag::Diagnostics;
 use crate::expr::{Rotation, Sym3, Vec3};
 use crate::language::Key;
-use crate::mechanism::{Freedom, Inertia, Input, NamedFrame, Pose};
+use crate::mechanism::{DegreeOfFreedomCounts, Inertia, InputEffect, NamedFrame, Pose};
 use crate::syntax::contact::MAX_CONTACT_POINTS;
-use crate::syntax::{DriveLaw, Formulation, GROUND, Rank};
+use crate::syntax::{FileForceLaw, Formulation, GROUND, Rank};
 use std::rc::Rc;
 
 /// Maximum number of scalar constraints of a mechanism: twice the maximum number of velocities, because half
@@ -69,7 +69,8 @@ impl<'g> Builder<'_, 'g> {
     fn attach_mass(&mut self, name: &str, (mass, com, central): MassProperties<'g>) {
         let Some(placed) = self.scope.kinematics.places.get(name) else { return };
         let Some(link) = placed.link else { return };
-        let (com, central) = (placed.pose.transform_point(com), placed.pose.rotation.sym_to_parent(central));
+        let (com, central) =
+            (placed.pose.transform_point(com), placed.pose.rotation.symmetric_tensor_in_parent_axes(central));
         let sum = &mut self.model.links[link.0].inertia;
         *sum = sum.plus(&Inertia::of_body(mass, com, central));
     }
@@ -80,14 +81,14 @@ impl<'g> Builder<'_, 'g> {
             let terms = weighted_coordinates(&self.scope, drive, cx);
             let on = (self.model.inputs.len(), terms.as_slice());
             for (quantity, value) in drive_quantities(&self.scope, drive, on, cx) {
-                let name = quantity.drive_quantity_name(&drive.name.text);
+                let name = quantity.file_force_quantity_name(&drive.name.text);
                 self.scope.kinematics.drive_quantities.insert(name, value);
             }
             if let Some(forces) = resolve_drive_forces(&self.scope, drive, on, cx) {
                 forces.add_forces_to_model(&mut self.model);
             }
-            if let DriveLaw::Input(unit) = drive.law {
-                self.model.inputs.push((drive.name.text.clone(), Input::Sum(terms, unit)));
+            if let FileForceLaw::Input(unit) = drive.law {
+                self.model.inputs.push((drive.name.text.clone(), InputEffect::Sum(terms, unit)));
             }
         }
     }
@@ -97,7 +98,7 @@ impl<'g> Builder<'_, 'g> {
         // Inputs without an element of their own appear in expressions. The others are filled in by their
         // elements.
         for input in &self.scope.description.inputs {
-            self.model.inputs.push((input.text.clone(), Input::Named));
+            self.model.inputs.push((input.text.clone(), InputEffect::Named));
         }
         for action in &self.scope.description.actions {
             let name = &action.name.text;
@@ -168,7 +169,8 @@ impl<'g> Builder<'_, 'g> {
             self.add_constraint_rows(&constraint.name.text, rows.unwrap_or_default());
         }
         self.model.constraints.sort_by_key(|c| c.residual.is_none());
-        self.model.freedom = Freedom { coordinates: self.model.nv(), velocities: self.model.nv() };
+        self.model.freedom =
+            DegreeOfFreedomCounts { coordinates: self.model.nv(), velocities: self.model.nv() };
         if !self.check_number_of_constraints(cx) {
             return ConstraintsAdded(());
         }
@@ -252,7 +254,9 @@ impl<'g> Builder<'_, 'g> {
             }
         }
         self.surfaces.extend(surfaces_of_pairs);
-        for limit in d.limits.iter().filter(|limit| limit.arguments.get(Key::Restitution).is_some()) {
+        for limit in
+            d.limits.iter().filter(|limit| limit.arguments.expression_of_key(Key::Restitution).is_some())
+        {
             self.model.contacts.extend(resolve_stops(&self.scope, limit, cx));
         }
         let count = self.model.contacts.len();

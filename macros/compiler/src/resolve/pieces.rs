@@ -87,7 +87,11 @@ impl<'g> Scope<'_, 'g> {
 
     /// Resolves a piecewise law. The arguments are the compared expression, the border, the piece below and
     /// the piece above.
-    pub fn resolve_pieces(&self, arguments: &[syntax::Expr], cx: &mut Diagnostics) -> Option<Expr<'g>> {
+    pub fn resolve_piecewise_law(
+        &self,
+        arguments: &[syntax::Expr],
+        cx: &mut Diagnostics,
+    ) -> Option<Expr<'g>> {
         let [left, right, below, above] = arguments else { return None };
         let compared = (self.resolve_scalar(left, cx), self.resolve_scalar(right, cx));
         let (x, border) = (compared.0?, compared.1?);
@@ -165,7 +169,7 @@ impl<'g> Scope<'_, 'g> {
         cx: &mut Diagnostics,
     ) -> bool {
         let place = left.place.extend_to_end_of(&right.place);
-        let (a, b) = (left.to_source(), right.to_source());
+        let (a, b) = (left.short_source_text(), right.short_source_text());
         match law.unequal_values_at_border(nested_borders) {
             Ok(None) => true,
             Ok(Some([first, second])) => {

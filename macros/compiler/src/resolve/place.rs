@@ -10,7 +10,7 @@ use super::scope::{AllowedQuantities, Context, Placed, PlacedElementKind};
 use super::tree::PlacementOrder;
 use crate::diag::{Diagnostics, join_names_with_and};
 use crate::expr::{Rotation, Vec3};
-use crate::language::{Callable, Method};
+use crate::language::{BodyOrInertiaMethod, Callable};
 use crate::mechanism::{LinkId, Pose};
 use crate::syntax::{Expr, ExprKind, GROUND, Name, words};
 
@@ -41,8 +41,8 @@ impl<'a, 'g> Builder<'a, 'g> {
         let mut waiting: Vec<UnplacedElement> = (0..order.joints.len()).map(UnplacedElement::Joint).collect();
         waiting.extend((0..d.frames.len()).map(UnplacedElement::Frame));
         waiting.extend((0..d.points.len()).map(UnplacedElement::Point));
-        let is_placed_body = |k: &usize| d.bodies[*k].at.is_some() || d.bodies[*k].frame.is_some();
-        waiting.extend((0..d.bodies.len()).filter(is_placed_body).map(UnplacedElement::Body));
+        let has_own_placement = |k: &usize| d.bodies[*k].at.is_some() || d.bodies[*k].frame.is_some();
+        waiting.extend((0..d.bodies.len()).filter(has_own_placement).map(UnplacedElement::Body));
         waiting.extend(
             (0..d.particles.len()).filter(|k| d.particles[*k].at.is_some()).map(UnplacedElement::Particle),
         );
@@ -137,7 +137,7 @@ impl<'a, 'g> Builder<'a, 'g> {
         // From an element to one for which it waits, until the path is a cycle.
         let next_waiting_dependency = |index: usize| {
             let needs = self.placement_dependencies(waiting[index], order);
-            (0..waiting.len()).find(|k| needs.contains(&self.name_of_item_placed(waiting[*k], order)))
+            (0..waiting.len()).find(|k| needs.contains(&self.name_of_element_to_place(waiting[*k], order)))
         };
         let mut path: Vec<usize> = vec![0];
         while let Some(k) = path.last().and_then(|index| next_waiting_dependency(*index)) {
@@ -162,7 +162,7 @@ impl<'a, 'g> Builder<'a, 'g> {
     }
 
     /// Returns the name of the element that an item places.
-    fn name_of_item_placed(&self, item: UnplacedElement, order: &PlacementOrder) -> String {
+    fn name_of_element_to_place(&self, item: UnplacedElement, order: &PlacementOrder) -> String {
         match item {
             UnplacedElement::Joint(k) => {
                 self.scope.description.joints[order.joints[k].0].child.body.text.clone()
@@ -174,7 +174,7 @@ impl<'a, 'g> Builder<'a, 'g> {
     /// Places the remaining elements at substitute poses, so that their dependents are resolved as well.
     fn place_at_substitute_poses(&mut self, waiting: &[UnplacedElement], order: &PlacementOrder) {
         for item in waiting {
-            let name = self.name_of_item_placed(*item, order);
+            let name = self.name_of_element_to_place(*item, order);
             let (link, pose) = self.add_link_if_moving(None, self.scope.substitute_pose(true));
             let kind = match item {
                 UnplacedElement::Joint(_) | UnplacedElement::Body(_) => PlacedElementKind::Body,
@@ -190,7 +190,7 @@ impl<'a, 'g> Builder<'a, 'g> {
         match item {
             UnplacedElement::Joint(k) => {
                 let (j, child) = order.joints[k];
-                self.place_joint(j, child, cx);
+                self.place_joint_child(j, child, cx);
             }
             UnplacedElement::Frame(k) => {
                 let (link, pose) = self
@@ -317,7 +317,8 @@ impl<'a, 'g> Builder<'a, 'g> {
         let (link, pose) = match (axes, origin) {
             (Some(axes), Some((link, mut pose))) => {
                 // The axes are relative to the link in which the origin is given.
-                pose.rotation = self.rotation_between(link, axes.link).compose_with(&axes.pose.rotation);
+                pose.rotation =
+                    self.rotation_between_links(link, axes.link).compose_with(&axes.pose.rotation);
                 (link, pose)
             }
             _ => (None, self.scope.substitute_pose(true)),
@@ -331,7 +332,7 @@ impl<'a, 'g> Builder<'a, 'g> {
     }
 
     /// Returns the orientation of link `link` in link `base`.
-    fn rotation_between(&self, base: Option<LinkId>, link: Option<LinkId>) -> Rotation<'g> {
+    fn rotation_between_links(&self, base: Option<LinkId>, link: Option<LinkId>) -> Rotation<'g> {
         let kinematics = &self.scope.kinematics;
         let rotation_to_ground = |mut current: Option<LinkId>| {
             let mut steps = Vec::new();
@@ -362,7 +363,7 @@ impl<'a, 'g> Builder<'a, 'g> {
                 Some((place.link, place.pose))
             }
             ExprKind::Method(base, method, arguments)
-                if method.id == Some(Method::At) && arguments.len() == 1 =>
+                if method.id == Some(BodyOrInertiaMethod::At) && arguments.len() == 1 =>
             {
                 let frame = self.scope.resolve_placement(base, cx)?;
                 self.placement_at_offset(frame, &arguments[0], free, cx)
@@ -389,7 +390,7 @@ impl<'a, 'g> Builder<'a, 'g> {
         cx: &mut Diagnostics,
     ) -> Option<(Option<LinkId>, Pose<'g>)> {
         let context = Context::new(AllowedQuantities::Placement, Some((frame.link, frame.pose.clone())));
-        let terms = self.scope.call_in_context(context, |scope| scope.resolve_terms(at, cx))?;
+        let terms = self.scope.call_in_context(context, |scope| scope.resolve_vector_terms(at, cx))?;
         let kinematics = &self.scope.kinematics;
         let zero = Vec3::zero(self.scope.graph);
         // A constant vector in the axes of a frame that rotates about the base point is placed in that frame.
@@ -401,7 +402,8 @@ impl<'a, 'g> Builder<'a, 'g> {
         {
             return Some((*axes, Pose { rotation: Rotation::identity(self.scope.graph), translation: *v }));
         }
-        let translation = frame.pose.translation + kinematics.resolve(&terms, frame.link, zero);
+        let translation =
+            frame.pose.translation + kinematics.components_in_link_axes(&terms, frame.link, zero);
         Some((frame.link, Pose { rotation: frame.pose.rotation, translation }))
     }
 

@@ -9,7 +9,7 @@ use crate::kinematics::{
     coordinate_as_expression, coordinate_velocity, symbols_in, time_derivative, velocity_gradient,
 };
 use crate::language::{Callable, FunctionId};
-use crate::mechanism::{Constraint, Input, LinkId, Model, Quantity, SumOfLinkVectors};
+use crate::mechanism::{Constraint, InputEffect, LinkId, Model, Quantity, SumOfLinkVectors};
 use crate::syntax::{self, Description, Name};
 
 /// Whether an output or a definition contains the power of an element.
@@ -91,14 +91,16 @@ pub fn power_of_input<'g>(scope: &Scope<'_, 'g>, model: &Model<'g>, element: &st
     let Some(k) = m.inputs.iter().position(|(name, _)| name == element) else { return m.graph.zero() };
     let u = Quantity::Input(k).expr(m.graph);
     match &m.inputs[k].1 {
-        Input::Named => m.graph.zero(),
-        Input::Coordinate(c) => u * coordinate_velocity(m, c),
-        Input::Sum(all, _) => all.iter().fold(m.graph.zero(), |sum, c| sum + u * coordinate_velocity(m, c)),
-        Input::Force { link, point, along } => {
+        InputEffect::Named => m.graph.zero(),
+        InputEffect::Coordinate(c) => u * coordinate_velocity(m, c),
+        InputEffect::Sum(all, _) => {
+            all.iter().fold(m.graph.zero(), |sum, c| sum + u * coordinate_velocity(m, c))
+        }
+        InputEffect::Force { link, point, along } => {
             let (linear, angular) = twist_of_link(scope, *link);
             u * (linear + angular.cross(*point)).dot(direction_in_link_axes(scope, *link, along))
         }
-        Input::Torque { link, about } => {
+        InputEffect::Torque { link, about } => {
             u * twist_of_link(scope, *link).1.dot(direction_in_link_axes(scope, *link, about))
         }
     }
@@ -117,7 +119,7 @@ fn direction_in_link_axes<'g>(
     direction: &SumOfLinkVectors<'g>,
 ) -> Vec3<'g> {
     let zero = Vec3::zero(scope.graph);
-    scope.kinematics.resolve(direction, Some(link), zero)
+    scope.kinematics.components_in_link_axes(direction, Some(link), zero)
 }
 
 impl<'g> Scope<'_, 'g> {

@@ -3,18 +3,18 @@
 
 use super::call::Call;
 use super::scope::{
-    AllowedQuantities, Axes, Context, Placed, PlacedElementKind, PlacedElements, Scope, Terms, Value,
+    AllowedQuantities, Axes, Context, Placed, PlacedElementKind, PlacedElements, Scope, Value, VectorTerms,
 };
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{Graph, Vec3};
 use crate::kinematics::normalised_or_zero;
-use crate::language::{FunctionId, Method};
+use crate::language::{BodyOrInertiaMethod, FunctionId};
 use crate::mechanism::{LinkId, Pose};
 use crate::syntax::{self, BinaryOp, ExprKind, GROUND, words};
 
 impl<'g> Scope<'_, 'g> {
     /// Returns a vector as a sum over the axes of links. All links must be resolved.
-    pub fn resolve_terms(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Terms<'g>> {
+    pub fn resolve_vector_terms(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<VectorTerms<'g>> {
         self.resolve_vector(e, cx).map(vector_terms_by_link)
     }
 
@@ -25,11 +25,11 @@ impl<'g> Scope<'_, 'g> {
         cx: &mut Diagnostics,
     ) -> Option<(Axes, Vec<Vec3<'g>>)> {
         let all: Vec<_> = e.iter().map(|e| Some((*e, self.resolve_vector(e, cx)?))).collect();
-        self.in_common_axes(all.into_iter().collect::<Option<_>>()?, cx)
+        self.express_in_common_axes(all.into_iter().collect::<Option<_>>()?, cx)
     }
 
     /// Expresses several resolved vectors in the axes of a common frame.
-    pub fn in_common_axes(
+    pub fn express_in_common_axes(
         &self,
         read: Vec<(&syntax::Expr, Vec<(Axes, Vec3<'g>)>)>,
         cx: &mut Diagnostics,
@@ -38,17 +38,22 @@ impl<'g> Scope<'_, 'g> {
             let all: Vec<_> = read.into_iter().map(|(e, terms)| self.own_axes_sum(terms, e, cx)).collect();
             return Some((Axes::Own, all.into_iter().collect::<Option<_>>()?));
         }
-        let all: Vec<Terms<'g>> = read.into_iter().map(|(_, terms)| vector_terms_by_link(terms)).collect();
+        let all: Vec<VectorTerms<'g>> =
+            read.into_iter().map(|(_, terms)| vector_terms_by_link(terms)).collect();
         let link = all.iter().flatten().next().and_then(|(link, _)| *link);
         let kinematics = &self.kinematics;
         let zero = Vec3::zero(self.graph);
-        Some((Axes::Link(link), all.iter().map(|t| kinematics.resolve(t, link, zero)).collect()))
+        Some((
+            Axes::Link(link),
+            all.iter().map(|t| kinematics.components_in_link_axes(t, link, zero)).collect(),
+        ))
     }
 
     /// Resolves `rate(coordinate)`, or the rate of an expression of coordinates, velocities and time.
     pub fn resolve_rate(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [argument] = call.arguments else {
-            let first = call.arguments.first().map_or("coordinate".to_string(), syntax::Expr::to_source);
+            let first =
+                call.arguments.first().map_or("coordinate".to_string(), syntax::Expr::short_source_text);
             cx.report_error(call.place.clone(), "`rate` takes one coordinate")
                 .add_help(format!("write `rate({first})`"));
             return None;
@@ -69,7 +74,7 @@ impl<'g> Scope<'_, 'g> {
         }
         let kinematics = &self.kinematics;
         let Some((_, c, _)) = kinematics.coordinates.iter().find(|(n, ..)| *n == name) else {
-            if self.is_moving(argument) {
+            if self.is_moving_expression(argument) {
                 return self.resolve_time_derivative(call.place, argument, cx).map(Value::Scalar);
             }
             if matches!(argument.kind, ExprKind::Name(_)) && !self.is_first_report(&name, cx) {
@@ -108,7 +113,7 @@ impl<'g> Scope<'_, 'g> {
         let normal = v[0].cross(v[1]);
         let sine = match v.get(2) {
             Some(n) => normal.dot(normalised_or_zero(*n)),
-            None => normal.length(),
+            None => normal.regularised_norm(),
         };
         Some(Value::Scalar(sine.atan2(v[0].dot(v[1]))))
     }
@@ -136,7 +141,7 @@ impl<'g> Scope<'_, 'g> {
                 }
             },
             ExprKind::Method(base, method, arguments)
-                if method.id == Some(Method::At) && arguments.len() == 1 =>
+                if method.id == Some(BodyOrInertiaMethod::At) && arguments.len() == 1 =>
             {
                 let base = self.resolve_placement(base, cx)?;
                 let context = Context::new(AllowedQuantities::Constant, None);
@@ -178,13 +183,15 @@ impl<'g> Scope<'_, 'g> {
     pub fn placement_of_moving_point(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Placed<'g>> {
         match &e.kind {
             ExprKind::Method(base, method, arguments)
-                if method.id == Some(Method::At) && arguments.len() == 1 =>
+                if method.id == Some(BodyOrInertiaMethod::At) && arguments.len() == 1 =>
             {
                 let base = self.placement_of_moving_point(base, cx)?;
                 let axes = Some((base.link, base.pose.clone()));
                 let context = Context::new(AllowedQuantities::Placement, axes);
-                let offset = self.call_in_context(context, |scope| scope.resolve_terms(&arguments[0], cx))?;
-                let offset = self.kinematics.resolve(&offset, base.link, Vec3::zero(self.graph));
+                let offset =
+                    self.call_in_context(context, |scope| scope.resolve_vector_terms(&arguments[0], cx))?;
+                let offset =
+                    self.kinematics.components_in_link_axes(&offset, base.link, Vec3::zero(self.graph));
                 let pose = Pose { translation: base.pose.translation + offset, rotation: base.pose.rotation };
                 Some(Placed { link: base.link, pose, kind: PlacedElementKind::Point })
             }
@@ -248,7 +255,7 @@ impl<'g> Scope<'_, 'g> {
     pub fn resolve_relative_position(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [y, x] = self.operands_of_kinematic_quantity(call, AllowedQuantities::Placement, cx)?;
         let (y, x) = (self.placement_of_moving_point(y, cx), self.placement_of_moving_point(x, cx));
-        Some(vector_value(self.kinematics.position_between(&y?, &x?)))
+        Some(vector_value_from_terms(self.kinematics.position_between(&y?, &x?)))
     }
 
     /// Resolves `v(y / x / A)`: the velocity of `y` relative to `x` in a frame A that rotates with `ω`:
@@ -257,7 +264,9 @@ impl<'g> Scope<'_, 'g> {
         let [y, x, frame] = self.operands_of_kinematic_quantity(call, AllowedQuantities::Motion, cx)?;
         let (y, x) = (self.placement_of_moving_point(y, cx), self.placement_of_moving_point(x, cx));
         let frame = self.resolve_frame_link(frame, cx);
-        Some(vector_value(self.kinematics.relative_velocity_in_frame(&y?, &x?, frame?, self.graph)))
+        Some(vector_value_from_terms(
+            self.kinematics.relative_velocity_in_frame(&y?, &x?, frame?, self.graph),
+        ))
     }
 
     /// Resolves `a(y / x / A)`: the acceleration of `y` relative to `x` in a frame A that rotates with `ω`
@@ -266,14 +275,16 @@ impl<'g> Scope<'_, 'g> {
         let [y, x, frame] = self.operands_of_kinematic_quantity(call, AllowedQuantities::Acceleration, cx)?;
         let (y, x) = (self.placement_of_moving_point(y, cx), self.placement_of_moving_point(x, cx));
         let frame = self.resolve_frame_link(frame, cx);
-        Some(vector_value(self.kinematics.relative_acceleration_in_frame(&y?, &x?, frame?, self.graph)))
+        Some(vector_value_from_terms(
+            self.kinematics.relative_acceleration_in_frame(&y?, &x?, frame?, self.graph),
+        ))
     }
 
     /// Resolves `omega(B / A)`, the angular velocity of B relative to A.
     pub fn angular_velocity(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let frames: [_; 2] = self.operands_of_kinematic_quantity(call, AllowedQuantities::Motion, cx)?;
         let [b, a] = frames.map(|e| self.resolve_frame_link(e, cx));
-        Some(vector_value(self.kinematics.angular_velocity_in_frame(b?, a?, self.graph)))
+        Some(vector_value_from_terms(self.kinematics.angular_velocity_in_frame(b?, a?, self.graph)))
     }
 
     /// Resolves `alpha(B / A / C)`, the angular acceleration of B relative to A in C.
@@ -281,7 +292,7 @@ impl<'g> Scope<'_, 'g> {
         let frames: [_; 3] =
             self.operands_of_kinematic_quantity(call, AllowedQuantities::Acceleration, cx)?;
         let [b, a, c] = frames.map(|e| self.resolve_frame_link(e, cx));
-        Some(vector_value(self.kinematics.angular_acceleration_in_frame(b?, a?, c?, self.graph)))
+        Some(vector_value_from_terms(self.kinematics.angular_acceleration_in_frame(b?, a?, c?, self.graph)))
     }
 }
 
@@ -293,11 +304,11 @@ impl<'g> PlacedElements<'g> {
         x: &Placed<'g>,
         frame: Option<LinkId>,
         graph: &'g Graph,
-    ) -> Terms<'g> {
+    ) -> VectorTerms<'g> {
         let mut v = self.velocity_of_point(y);
         v.extend(negate_terms(self.velocity_of_point(x)));
         if let Some(l) = frame {
-            let r = self.resolve(&self.position_between(y, x), frame, Vec3::zero(graph));
+            let r = self.components_in_link_axes(&self.position_between(y, x), frame, Vec3::zero(graph));
             v.push((frame, -self.twists[l.0].angular.cross(r)));
         }
         v
@@ -310,14 +321,18 @@ impl<'g> PlacedElements<'g> {
         x: &Placed<'g>,
         frame: Option<LinkId>,
         graph: &'g Graph,
-    ) -> Terms<'g> {
+    ) -> VectorTerms<'g> {
         let mut a = self.acceleration_of_point(y);
         a.extend(negate_terms(self.acceleration_of_point(x)));
         if let Some(l) = frame {
             let zero = Vec3::zero(graph);
             let (w, dw) = (self.twists[l.0].angular, self.accelerations[l.0].angular);
-            let r = self.resolve(&self.position_between(y, x), frame, zero);
-            let v = self.resolve(&self.relative_velocity_in_frame(y, x, frame, graph), frame, zero);
+            let r = self.components_in_link_axes(&self.position_between(y, x), frame, zero);
+            let v = self.components_in_link_axes(
+                &self.relative_velocity_in_frame(y, x, frame, graph),
+                frame,
+                zero,
+            );
             let coriolis = w.cross(v);
             a.push((frame, -(dw.cross(r) + w.cross(w.cross(r)) + coriolis + coriolis)));
         }
@@ -330,7 +345,7 @@ impl<'g> PlacedElements<'g> {
         body: Option<LinkId>,
         frame: Option<LinkId>,
         graph: &'g Graph,
-    ) -> Terms<'g> {
+    ) -> VectorTerms<'g> {
         let angular_velocity_of_link =
             |link: Option<LinkId>| link.map_or(Vec3::zero(graph), |l| self.twists[l.0].angular);
         vec![(body, angular_velocity_of_link(body)), (frame, -angular_velocity_of_link(frame))]
@@ -344,11 +359,11 @@ impl<'g> PlacedElements<'g> {
         a: Option<LinkId>,
         c: Option<LinkId>,
         graph: &'g Graph,
-    ) -> Terms<'g> {
+    ) -> VectorTerms<'g> {
         let zero = Vec3::zero(graph);
         let angular_acceleration_of_link =
             |link: Option<LinkId>| link.map_or(zero, |l| self.accelerations[l.0].angular);
-        let w = self.resolve(&self.angular_velocity_in_frame(b, a, graph), c, zero);
+        let w = self.components_in_link_axes(&self.angular_velocity_in_frame(b, a, graph), c, zero);
         let turns = c.map_or(zero, |l| self.twists[l.0].angular);
         vec![
             (b, angular_acceleration_of_link(b)),
@@ -358,16 +373,16 @@ impl<'g> PlacedElements<'g> {
     }
 }
 
-fn negate_terms<'g>(terms: Terms<'g>) -> Terms<'g> {
+fn negate_terms<'g>(terms: VectorTerms<'g>) -> VectorTerms<'g> {
     terms.into_iter().map(|(l, v)| (l, -v)).collect()
 }
 
-pub(super) fn vector_value<'g>(terms: Terms<'g>) -> Value<'g> {
+pub(super) fn vector_value_from_terms<'g>(terms: VectorTerms<'g>) -> Value<'g> {
     Value::Vector(terms.into_iter().map(|(link, v)| (Axes::Link(link), v)).collect())
 }
 
 /// Converts a vector to a sum over the axes of links.
-pub(super) fn vector_terms_by_link<'g>(terms: Vec<(Axes, Vec3<'g>)>) -> Terms<'g> {
+pub(super) fn vector_terms_by_link<'g>(terms: Vec<(Axes, Vec3<'g>)>) -> VectorTerms<'g> {
     terms.into_iter().map(|(axes, v)| (link_of_axes(&axes), v)).collect()
 }
 

@@ -5,7 +5,7 @@
 //! constraints.
 
 use super::call::Call;
-use super::scope::{AllowedQuantities, Axes, Placed, Scope, Terms, Value};
+use super::scope::{AllowedQuantities, Axes, Placed, Scope, Value, VectorTerms};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Vec3};
 use crate::kinematics::symbols_in;
@@ -50,7 +50,7 @@ pub struct ReleasedJoints<'a, 'g> {
     /// dissipation.
     pub forces: Vec<(String, Vec<Expr<'g>>)>,
     /// Contact point of each constraint of touching surfaces, by name, from the ground's origin.
-    pub contact_points: BTreeMap<String, Terms<'g>>,
+    pub contact_points: BTreeMap<String, VectorTerms<'g>>,
 }
 
 impl<'a, 'g> ReleasedJoints<'a, 'g> {
@@ -103,6 +103,6 @@ impl<'g> Scope<'_, 'g> {
         };
         let first = RELEASED * j + offset;
         let components = Vec3([0, 1, 2].map(|k| Quantity::Reaction(first + k).expr(self.graph)));
-        Some(Value::Vector(vec![(Axes::Link(*link), rotation.to_parent(components))]))
+        Some(Value::Vector(vec![(Axes::Link(*link), rotation.vector_in_parent_axes(components))]))
     }
 }

@@ -5,7 +5,7 @@ use super::corrections::{
 };
 use super::scope::Scope;
 use crate::diag::{Diagnostics, Place};
-use crate::expr::sample::always_equals;
+use crate::expr::sample::always_equals_number;
 use crate::expr::{Expr, Mat3, Rotation};
 use crate::language::{self, Callable};
 use crate::mechanism::Rule;
@@ -37,7 +37,7 @@ impl<'g> Scope<'_, 'g> {
                         ));
                     }
                     (language::Rotation::Eigenaxis, _, [n, angle]) => {
-                        let n = self.unit_vector(n, false, cx);
+                        let n = self.resolve_unit_vector(n, false, cx);
                         let angle = self.resolve_angle_in_radians(angle, cx);
                         return Some(Rotation::rotation_about_axis(n?, angle?));
                     }
@@ -121,8 +121,8 @@ fn check_rotation_matrix(m: &Mat3<'_>, place: &Place, cx: &mut Diagnostics) -> b
     let product = m.transpose() * *m;
     let determinant = m.column(0).cross(m.column(1)).dot(m.column(2));
     let orthogonal =
-        (0..3).all(|i| (0..3).all(|j| always_equals(product.0[i][j], if i == j { 1.0 } else { 0.0 })));
-    if orthogonal && always_equals(determinant, 1.0) {
+        (0..3).all(|i| (0..3).all(|j| always_equals_number(product.0[i][j], if i == j { 1.0 } else { 0.0 })));
+    if orthogonal && always_equals_number(determinant, 1.0) {
         return true;
     }
     cx.report_error(place.clone(), "this matrix is not a rotation")

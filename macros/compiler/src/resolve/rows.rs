@@ -1,11 +1,11 @@
 //! Rows of constraints.
 
 use super::contact::Surface;
-use super::scope::{Scope, Terms};
+use super::scope::{Scope, VectorTerms};
 use crate::diag::Place;
 use crate::expr::Expr;
 use crate::kinematics::time_derivative;
-use crate::mechanism::{Constraint, Measure};
+use crate::mechanism::{Constraint, MeasuredQuantity};
 
 /// Rows of a constraint, which the builder adds to those of the other constraints.
 #[derive(Default)]
@@ -15,7 +15,7 @@ pub struct ConstraintRows<'g> {
     /// Names of components of the constraint that vanish identically.
     pub redundant: Vec<String>,
     /// Contact point of the surfaces, relative to the ground's origin.
-    pub contact_point: Option<Terms<'g>>,
+    pub contact_point: Option<VectorTerms<'g>>,
     /// Surfaces of a pair that rolls or slips.
     pub surfaces: Vec<Surface<'g>>,
 }
@@ -24,7 +24,7 @@ pub struct ConstraintRows<'g> {
 pub fn constraint_from_residual_and_rate<'g>(
     scope: &Scope<'_, 'g>,
     (name, place): (String, &Place),
-    measure: Measure,
+    measure: MeasuredQuantity,
     residual: Option<Expr<'g>>,
     rate: Expr<'g>,
 ) -> Constraint<'g> {

@@ -3,7 +3,7 @@
 
 use super::resolved::ResolvedMatrix;
 use crate::expr::{Expr, Graph, Rotation, Sym3, Vec3};
-use crate::kinematics::{Joint, Spatial, express_in_link_axes};
+use crate::kinematics::{Joint, SpatialVector, express_in_link_axes};
 use crate::mechanism::{Chart, Coordinate, InQ, InV, LinkId, Pose, Requirement};
 use crate::syntax::{self, Description, Rank};
 use std::cell::RefCell;
@@ -195,7 +195,7 @@ pub struct PlacedElements<'g> {
     /// Charts of the configuration space; set after all links are placed.
     pub charts: Vec<Chart>,
     /// Twists of the links; set after all links are placed.
-    pub twists: Vec<Spatial<'g>>,
+    pub twists: Vec<SpatialVector<'g>>,
     /// Index of each joint, and the axes of its frame on the parent, in which its reactions are resolved.
     pub transmissions: BTreeMap<String, (usize, Option<LinkId>, Rotation<'g>)>,
     /// Forces and moments between the surfaces of each contact.
@@ -205,7 +205,7 @@ pub struct PlacedElements<'g> {
     /// Quantities of force elements of a file, by the names that the laws of these elements contain.
     pub drive_quantities: BTreeMap<String, Expr<'g>>,
     /// Accelerations of the links; set after all links are placed.
-    pub accelerations: Vec<Spatial<'g>>,
+    pub accelerations: Vec<SpatialVector<'g>>,
     /// Mass, centre of mass and central inertia of bodies and particles.
     pub masses: BTreeMap<String, MassProperties<'g>>,
 }
@@ -232,16 +232,21 @@ impl<'g> ContactLoads<'g> {
 pub type ElementPower<'g> = Result<Expr<'g>, &'static str>;
 
 /// A vector as a sum over the axes of links.
-pub type Terms<'g> = Vec<(Option<LinkId>, Vec3<'g>)>;
+pub type VectorTerms<'g> = Vec<(Option<LinkId>, Vec3<'g>)>;
 
 impl<'g> PlacedElements<'g> {
     /// Returns the components of a sum in the axes of one link.
-    pub fn resolve(&self, terms: &Terms<'g>, link: Option<LinkId>, zero: Vec3<'g>) -> Vec3<'g> {
+    pub fn components_in_link_axes(
+        &self,
+        terms: &VectorTerms<'g>,
+        link: Option<LinkId>,
+        zero: Vec3<'g>,
+    ) -> Vec3<'g> {
         terms.iter().fold(zero, |sum, (from, v)| sum + express_in_link_axes(&self.joints, *v, *from, link))
     }
 
     /// Returns the position of a point relative to the ground's origin.
-    pub fn position_of_point(&self, link: Option<LinkId>, p: Vec3<'g>) -> Terms<'g> {
+    pub fn position_of_point(&self, link: Option<LinkId>, p: Vec3<'g>) -> VectorTerms<'g> {
         let mut terms = vec![(link, p)];
         let mut current = link;
         while let Some(l) = current {
@@ -253,7 +258,7 @@ impl<'g> PlacedElements<'g> {
     }
 
     /// Returns `r(y / x)`; links that carry both points cancel.
-    pub fn position_between(&self, y: &Placed<'g>, x: &Placed<'g>) -> Terms<'g> {
+    pub fn position_between(&self, y: &Placed<'g>, x: &Placed<'g>) -> VectorTerms<'g> {
         let mut sum = self.position_of_point(y.link, y.pose.translation);
         for (axes, v) in self.position_of_point(x.link, x.pose.translation) {
             match sum.iter_mut().find(|(known, _)| *known == axes) {
@@ -266,7 +271,7 @@ impl<'g> PlacedElements<'g> {
     }
 
     /// Returns the velocity of a point relative to the ground.
-    pub fn velocity_of_point(&self, p: &Placed<'g>) -> Terms<'g> {
+    pub fn velocity_of_point(&self, p: &Placed<'g>) -> VectorTerms<'g> {
         p.link.map_or(Vec::new(), |l| {
             let t = &self.twists[l.0];
             vec![(p.link, t.linear + t.angular.cross(p.pose.translation))]
@@ -274,7 +279,7 @@ impl<'g> PlacedElements<'g> {
     }
 
     /// Returns the acceleration of a point relative to the ground.
-    pub fn acceleration_of_point(&self, p: &Placed<'g>) -> Terms<'g> {
+    pub fn acceleration_of_point(&self, p: &Placed<'g>) -> VectorTerms<'g> {
         p.link.map_or(Vec::new(), |l| {
             let (t, a, r) = (&self.twists[l.0], &self.accelerations[l.0], p.pose.translation);
             vec![(p.link, a.linear + a.angular.cross(r) + t.angular.cross(t.angular.cross(r)))]

@@ -53,7 +53,7 @@ fn replace_velocities<'g>(
     let nv = model.nv();
     let block: Vec<Vec<Expr<'g>>> =
         rows.iter().map(|row| columns.iter().map(|k| row[*k]).collect()).collect();
-    let Some(inverse) = speeds::inverse(model, &block) else {
+    let Some(inverse) = speeds::inverse_of_speed_matrix(model, &block) else {
         let limit = speeds::MOST_COUPLED;
         cx.report_error(
             declared[0].value.place.clone(),
@@ -64,7 +64,7 @@ fn replace_velocities<'g>(
     };
     let g = model.graph;
     let identity_entry = |i: usize, j: usize| if i == j { g.one() } else { g.zero() };
-    let full_matrix = |block: &[Vec<Expr<'g>>]| -> Vec<Vec<Expr<'g>>> {
+    let embed_block_in_identity = |block: &[Vec<Expr<'g>>]| -> Vec<Vec<Expr<'g>>> {
         let position_among_columns = |k: usize| columns.iter().position(|n| *n == k);
         let entry_of_velocity_matrix =
             |i: usize, j: usize| match (position_among_columns(i), position_among_columns(j)) {
@@ -77,7 +77,8 @@ fn replace_velocities<'g>(
     for (k, speed) in columns.iter().zip(declared) {
         renamed[*k] = (speed.name.text.clone(), speed.name.place.clone());
     }
-    let (velocity_to_speed_matrix, rates) = (full_matrix(&block), full_matrix(&inverse));
+    let (velocity_to_speed_matrix, rates) =
+        (embed_block_in_identity(&block), embed_block_in_identity(&inverse));
     let replaced = columns.into_iter().map(InV).collect();
     let velocities = model.velocities.clone();
     Some((Speeds { velocity_to_speed_matrix, rates, replaced, velocities }, renamed))
@@ -105,7 +106,7 @@ fn speed_coefficients<'g>(
         );
         return None;
     }
-    let state = |k: usize| {
+    let state_name_of_parameter = |k: usize| {
         scope.description.states.iter().find(|(_, parameter)| *parameter == k).map(|(name, _)| &name.text)
     };
     for symbol in symbols_in(&row) {
@@ -124,7 +125,7 @@ fn speed_coefficients<'g>(
                 "it is a linear combination of rates whose coefficients depend on coordinates and \
                  parameters",
             ),
-            Quantity::Parameter(k) => match state(k) {
+            Quantity::Parameter(k) => match state_name_of_parameter(k) {
                 Some(state) => (
                     format!("a speed cannot depend on the state `{state}`"),
                     "it is a linear combination of rates whose coefficients depend on coordinates and \

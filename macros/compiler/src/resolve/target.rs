@@ -1,9 +1,9 @@
 //! Targets of force elements and limits: coordinates, points, and lengths given by expressions.
 
 use super::scope::{Placed, Scope};
-use super::terms::{Stretch, stretch_from_expression};
+use super::terms::{StretchWithRate, stretch_from_expression};
 use crate::diag::{Diagnostics, Place, join_with_or};
-use crate::language::Method;
+use crate::language::BodyOrInertiaMethod;
 use crate::mechanism::Coordinate;
 use crate::syntax::{Expr, ExprKind, GROUND, Name};
 
@@ -14,7 +14,7 @@ pub enum ResolvedTarget<'g> {
     /// Point of a body, a particle, or a named point.
     Point(Placed<'g>),
     /// Target that is a length or angle given by an expression.
-    Expression(Stretch<'g>),
+    Expression(StretchWithRate<'g>),
 }
 
 /// Returns the coordinate of a limit, and whether it is an angle, if that is known.
@@ -25,11 +25,14 @@ pub fn resolve_limited_coordinate<'g>(
 ) -> Option<(Coordinate, Option<bool>)> {
     let joint = on.as_name().and_then(|name| scope.joint_coordinates(name));
     if joint.is_some_and(|coordinates| coordinates.is_empty()) {
-        cx.report_error(on.place.clone(), format!("`{}` has no coordinate to be limited", on.to_source()))
-            .add_help(
-                "limits apply to joints with plain coordinates: not to a Ball, Free or Weld, and not to a \
+        cx.report_error(
+            on.place.clone(),
+            format!("`{}` has no coordinate to be limited", on.short_source_text()),
+        )
+        .add_help(
+            "limits apply to joints with plain coordinates: not to a Ball, Free or Weld, and not to a \
              joint that closes a loop",
-            );
+        );
         return None;
     }
     match resolve_target(scope, on, cx)? {
@@ -55,7 +58,7 @@ pub fn resolve_target<'g>(
         ExprKind::Name(name) => resolve_named_target(scope, on, name, cx),
         ExprKind::Field(joint, coordinate) => resolve_joint_coordinate(scope, on, joint, coordinate, cx),
         ExprKind::Method(inner, method, arguments)
-            if method.id == Some(Method::At) && arguments.len() == 1 =>
+            if method.id == Some(BodyOrInertiaMethod::At) && arguments.len() == 1 =>
         {
             let ExprKind::Name(name) = &inner.kind else {
                 cx.report_error(on.place.clone(), "expected a body");

@@ -12,7 +12,7 @@ use crate::mechanism::{Coordinate, Model, Pose, Quantity};
 use crate::syntax::{self, ExprKind};
 
 /// Length or angle on which a force element acts, with its rate.
-pub struct Stretch<'g> {
+pub struct StretchWithRate<'g> {
     /// Value of the length or angle, m or rad.
     pub value: Expr<'g>,
     /// Rate of the length or angle, linear in the velocities.
@@ -26,7 +26,7 @@ pub struct Stretch<'g> {
 /// The length or the angle on which a force element acts.
 pub struct ForceElementCoordinate<'g> {
     /// Value and rate of the length or the angle; `None` for a coordinate.
-    pub stretch: Option<Stretch<'g>>,
+    pub stretch: Option<StretchWithRate<'g>>,
     /// Whether it is an angle; `None` if it may also be a length.
     pub angle: Option<bool>,
     /// Coordinate on which the element acts; `None` for a length.
@@ -35,7 +35,7 @@ pub struct ForceElementCoordinate<'g> {
 
 impl<'g> ForceElementCoordinate<'g> {
     /// Returns the value and the rate of the length or the angle.
-    pub fn stretch(self, scope: &Scope<'_, 'g>) -> Option<Stretch<'g>> {
+    pub fn stretch(self, scope: &Scope<'_, 'g>) -> Option<StretchWithRate<'g>> {
         self.stretch.or_else(|| self.coordinate.map(|c| coordinate_stretch(scope, &c)))
     }
 }
@@ -99,10 +99,10 @@ pub fn set_signature_dependencies(m: &mut Model<'_>) {
 }
 
 /// Returns the stretch of a coordinate.
-pub fn coordinate_stretch<'g>(scope: &Scope<'_, 'g>, c: &Coordinate) -> Stretch<'g> {
+pub fn coordinate_stretch<'g>(scope: &Scope<'_, 'g>, c: &Coordinate) -> StretchWithRate<'g> {
     let g = scope.graph;
     let value = coordinate_as_expression(g, c);
-    Stretch { value, square: value.square(), rate: c.v.expr(g) * g.num(c.ratio), signed: false }
+    StretchWithRate { value, square: value.square(), rate: c.v.expr(g) * g.num(c.ratio), signed: false }
 }
 
 /// Returns a length or an angle given by an expression of the coordinates, such as the length of a cable.
@@ -110,8 +110,8 @@ pub fn stretch_from_expression<'g>(
     scope: &Scope<'_, 'g>,
     e: &syntax::Expr,
     cx: &mut Diagnostics,
-) -> Option<Stretch<'g>> {
-    let stretch = position_value_and_rate(scope, e, cx)?;
+) -> Option<StretchWithRate<'g>> {
+    let stretch = value_and_rate_of_expression(scope, e, cx)?;
     if velocity_gradient(stretch.rate).is_empty() {
         let message = "this contains no coordinate: a force on it has no effect";
         cx.report_error(e.place.clone(), message).add_help(
@@ -124,15 +124,15 @@ pub fn stretch_from_expression<'g>(
 }
 
 /// Returns the value and the rate of an expression of positions, which may be constant.
-pub fn position_value_and_rate<'g>(
+pub fn value_and_rate_of_expression<'g>(
     scope: &Scope<'_, 'g>,
     e: &syntax::Expr,
     cx: &mut Diagnostics,
-) -> Option<Stretch<'g>> {
+) -> Option<StretchWithRate<'g>> {
     let context = Context::new(AllowedQuantities::Placement, Some((None, Pose::identity(scope.graph))));
     let value = scope.call_in_context(context, |scope| scope.resolve_scalar(e, cx))?;
     let rate = time_derivative(scope.configuration_space(), value);
-    Some(Stretch { value, rate, square: value.square(), signed: false })
+    Some(StretchWithRate { value, rate, square: value.square(), signed: false })
 }
 
 /// Returns the distance between two points. If they move along one line, the distance is the signed
@@ -143,7 +143,7 @@ pub fn distance_between_points<'g>(
     a: &syntax::Expr,
     b: &syntax::Expr,
     cx: &mut Diagnostics,
-) -> Option<Stretch<'g>> {
+) -> Option<StretchWithRate<'g>> {
     let (first, second) = (scope.resolve_placement(a, cx), scope.resolve_placement(b, cx));
     let (first, second) = (first?, second?);
     if first.link == second.link {
@@ -155,7 +155,7 @@ pub fn distance_between_points<'g>(
     let zero = Vec3::zero(scope.graph);
     let terms = kinematics.position_between(&second, &first);
     let axes = terms.first().and_then(|(link, _)| *link);
-    let r = kinematics.resolve(&terms, axes, zero);
+    let r = kinematics.components_in_link_axes(&terms, axes, zero);
     // The test for a common line ignores released joints.
     let with_closed_joints = Vec3(scope.with_released_coordinates_zero(&r.0).try_into().unwrap_or(r.0));
     if is_zero_for_all_values(with_closed_joints) {
@@ -167,14 +167,14 @@ pub fn distance_between_points<'g>(
     v.extend(kinematics.velocity_of_point(&first).into_iter().map(|(link, v)| (link, -v)));
     if let Some(line) = constant_direction(with_closed_joints) {
         let e = Vec3::vector_from_constants(scope.graph, line);
-        let rate = e.dot(kinematics.resolve(&v, axes, zero));
+        let rate = e.dot(kinematics.components_in_link_axes(&v, axes, zero));
         let value = r.dot(e);
-        return Some(Stretch { value, square: value.square(), rate, signed: true });
+        return Some(StretchWithRate { value, square: value.square(), rate, signed: true });
     }
-    let length = r.length();
+    let length = r.regularised_norm();
     let n = r.map(|c| c / length);
-    let rate = n.dot(kinematics.resolve(&v, axes, zero));
-    Some(Stretch { value: length, square: r.dot(r), rate, signed: false })
+    let rate = n.dot(kinematics.components_in_link_axes(&v, axes, zero));
+    Some(StretchWithRate { value: length, square: r.dot(r), rate, signed: false })
 }
 
 /// Whether a vector is zero for all coordinates and parameters.

@@ -21,16 +21,16 @@ pub struct PlacementOrder {
 
 /// Returns for each joint whether it closes a loop: its child is placed by an earlier joint or has a position
 /// of its own, or is an ancestor of the parent. All other joints form the spanning tree.
-pub fn loop_closing_joints(description: &Description) -> Vec<bool> {
+pub fn loop_closing_flags(description: &Description) -> Vec<bool> {
     let mut parents: BTreeMap<&str, &str> = BTreeMap::new();
     for point in &description.points {
-        if let Some(base) = point.on.as_ref().and_then(leading_body_name) {
+        if let Some(base) = point.on.as_ref().and_then(body_name_of_position) {
             parents.insert(&point.name.text, base);
         }
     }
     for particle in &description.particles {
         if let Some(at) = &particle.at {
-            parents.insert(&particle.name.text, leading_body_name(at).unwrap_or(GROUND));
+            parents.insert(&particle.name.text, body_name_of_position(at).unwrap_or(GROUND));
         }
     }
     let mut closing = Vec::with_capacity(description.joints.len());
@@ -59,10 +59,10 @@ fn is_descendant(parents: &BTreeMap<&str, &str>, carrier: &str, carried: &str) -
 }
 
 /// Returns the body's name at the beginning of `body.at(vector)`.
-pub fn leading_body_name(e: &Expr) -> Option<&str> {
+pub fn body_name_of_position(e: &Expr) -> Option<&str> {
     match &e.kind {
         ExprKind::Name(name) => Some(name),
-        ExprKind::Method(base, ..) => leading_body_name(base),
+        ExprKind::Method(base, ..) => body_name_of_position(base),
         _ => None,
     }
 }
@@ -91,7 +91,7 @@ pub fn find_spanning_tree(
     let mut is_attached = vec![false; jointed.len()];
     let (mut ends, mut loops) = (Vec::new(), Vec::new());
     let mut is_valid = true;
-    let closing = loop_closing_joints(description);
+    let closing = loop_closing_flags(description);
     for (j, joint) in description.joints.iter().enumerate() {
         let (parent, child) = (index_of_body(&joint.parent.body, cx), index_of_body(&joint.child.body, cx));
         let (Ok(parent), Ok(child)) = (parent, child) else {
@@ -120,16 +120,17 @@ pub fn find_spanning_tree(
     if !is_valid {
         return None;
     }
-    let is_placed = |k: usize| description.bodies.get(k).is_some_and(|b| b.at.is_some() || b.frame.is_some());
+    let has_own_placement =
+        |k: usize| description.bodies.get(k).is_some_and(|b| b.at.is_some() || b.frame.is_some());
     for (k, body) in jointed.iter().enumerate() {
-        if !is_attached[k] && !is_placed(k) {
+        if !is_attached[k] && !has_own_placement(k) {
             if !description.partial {
                 report_unattached(description, body, &loops, cx);
             }
             is_valid = false;
         }
     }
-    let roots: Vec<BodyIndex> = (0..jointed.len()).filter(|k| is_placed(*k)).collect();
+    let roots: Vec<BodyIndex> = (0..jointed.len()).filter(|k| has_own_placement(*k)).collect();
     let order = sort_joints_depth_first(&ends, jointed.len(), &roots);
     is_valid.then_some(PlacementOrder { joints: order, closing: loops })
 }

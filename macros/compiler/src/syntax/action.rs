@@ -38,7 +38,7 @@ pub fn read_force_element(
 fn report_unnamed_target(kind: ForceKind, arguments: &mut Arguments, cx: &mut Diagnostics) -> bool {
     let (on, spans) = (kind.row().on, kind.row().between);
     let between_help = |a: &Expr, b: &Expr| match spans {
-        true => format!("write `between = ({}, {})`", a.to_source(), b.to_source()),
+        true => format!("write `between = ({}, {})`", a.short_source_text(), b.short_source_text()),
         false => "say what it acts on: `on = …`".to_string(),
     };
     if let Some((a, b)) = arguments.take_arrow_relation() {
@@ -60,7 +60,7 @@ fn report_unnamed_target(kind: ForceKind, arguments: &mut Arguments, cx: &mut Di
     let plain = arguments.positional_arguments();
     let (Some(first), Some(last)) = (plain.first(), plain.last()) else { return false };
     let help = match plain {
-        [one] if on => format!("write `on = {}`", one.to_source()),
+        [one] if on => format!("write `on = {}`", one.short_source_text()),
         [a, b, ..] => between_help(a, b),
         _ => "write `between = (first, second)`".to_string(),
     };
@@ -90,7 +90,7 @@ fn read_target(
         };
         let help = match ends.as_slice() {
             [a, b] if row.between => {
-                format!("write `between = ({}, {})`", a.to_source(), b.to_source())
+                format!("write `between = ({}, {})`", a.short_source_text(), b.short_source_text())
             }
             _ => "declare a field for each thing that it acts on".to_string(),
         };
@@ -117,11 +117,15 @@ fn read_target(
             let second = arguments.take_end_of_bare_pair(&other);
             let help = match &other.kind {
                 _ if second.is_some() => {
-                    let second = second.map_or_else(String::new, |second| second.to_source());
-                    format!("write `between = ({}, {second})`", other.to_source())
+                    let second = second.map_or_else(String::new, |second| second.short_source_text());
+                    format!("write `between = ({}, {second})`", other.short_source_text())
                 }
                 ExprKind::Array(ends) if ends.len() == 2 => {
-                    format!("write `between = ({}, {})`", ends[0].to_source(), ends[1].to_source())
+                    format!(
+                        "write `between = ({}, {})`",
+                        ends[0].short_source_text(),
+                        ends[1].short_source_text()
+                    )
                 }
                 ExprKind::Name(name) if row.on => {
                     format!("write `on = {name}`, or `between = (first, second)`")

@@ -230,7 +230,7 @@ impl Arguments {
                 && !value.as_name().is_some_and(|word| known.contains(&word))
             {
                 let error = cx.report_error(value.place.clone(), "expected `name = value`");
-                error.add_help(format!("write `{key} = {}`", value.to_source()));
+                error.add_help(format!("write `{key} = {}`", value.short_source_text()));
                 if !others.is_empty() {
                     error.suggest_name("", known.iter().copied());
                 }
@@ -407,7 +407,7 @@ impl Arguments {
         if let Some((left, right)) = self.equations.pop() {
             let error = cx.report_error(left.place.extend_to_end_of(&right.place), "expected `name = value`");
             match left.as_name().filter(|name| known.contains(name)) {
-                Some(name) => error.add_help(format!("write `{name} = {}`", right.to_source())),
+                Some(name) => error.add_help(format!("write `{name} = {}`", right.short_source_text())),
                 None if known.is_empty() => error.add_help(format!("write `{example}`")),
                 None => error.suggest_name("", known.iter().copied()),
             };

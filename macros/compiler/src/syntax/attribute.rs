@@ -1,10 +1,10 @@
 //! Parsing of the struct and its attributes: fields are classified as parameters and elements.
 
 use super::expression::name_from_identifier;
-use super::field::{is_known, read_field, report_duplicate_fields};
+use super::field::{is_known_field_type, read_field, report_duplicate_fields};
 use super::lists::ElementListLengths;
-use super::mechanism::{Mechanism, Shell};
-use super::options::read_options;
+use super::mechanism::{GeneratedStruct, Mechanism};
+use super::options::read_mechanism_options;
 use super::parameter::type_name;
 use super::readable::FieldReadability;
 use super::request::RequestedFunctions;
@@ -35,7 +35,7 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
     let (arguments, runtime) = crate_path::take_crate_path(arguments, cx);
     let (generic, refused) = separate_scalar_type_parameter(&mut item, cx);
     let mut description = Description::empty_description(name_from_identifier(&item.ident));
-    let mut shell = Shell {
+    let mut shell = GeneratedStruct {
         attributes: item.attrs.clone(),
         visibility: item.vis.clone(),
         ident: item.ident.clone(),
@@ -45,7 +45,7 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
         file_fields: Vec::new(),
         elements: Vec::new(),
         notes: declaration::field_doc_paragraphs(&item),
-        declaration: declaration::declaration_text(&item, fields),
+        declaration: declaration::mechanism_declaration_text(&item, fields),
         runtime,
     };
     let mut scalar: Option<(ScalarType, Place)> = None;
@@ -58,7 +58,7 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
             reading.mark_last_field_unreadable();
             continue;
         }
-        unknown_types.extend(kind.filter(|kind| !is_known(kind, generic.as_deref())));
+        unknown_types.extend(kind.filter(|kind| !is_known_field_type(kind, generic.as_deref())));
         let before = cx.len();
         read_field(field, generic.as_deref(), &mut description, &mut shell, &mut scalar, cx);
         if cx.len() > before {
@@ -66,7 +66,7 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
         }
     }
     let (mut requests, before) = (RequestedFunctions::default(), cx.len());
-    let file = read_options(arguments.clone(), &mut description, &mut scalar, &mut requests, cx);
+    let file = read_mechanism_options(arguments.clone(), &mut description, &mut scalar, &mut requests, cx);
     if cx.len() > before {
         reading.mark_if_options_unreadable(arguments);
     }

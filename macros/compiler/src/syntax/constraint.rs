@@ -22,10 +22,10 @@ pub fn read_constraint(
     if let (Some((value, None)), [second, ..]) = (&found, arguments.positional_arguments()) {
         let (message, help) = match kind.surface_pair_function() {
             Some(pair) => {
-                (format!("expected a pair that {}", pair.contact_verb()), format!("write `{example}`"))
+                (format!("expected a pair that {}", pair.rolls_or_slips_name()), format!("write `{example}`"))
             }
             None => {
-                let help = format!("write `{} = {}`", value.to_source(), second.to_source());
+                let help = format!("write `{} = {}`", value.short_source_text(), second.short_source_text());
                 ("expected one equation".to_string(), help)
             }
         };
@@ -62,7 +62,7 @@ pub fn read_limit(
     let is_empty = arguments.is_empty();
     arguments.report_remaining_arguments("a Limit", names, cx);
     let Some(on) = on else { return };
-    if given.iter().all(|(key, _)| key == Key::Restitution) {
+    if given.keyed_expressions().all(|(key, _)| key == Key::Restitution) {
         if is_empty {
             cx.report_error(name.place.clone(), format!("the limit `{}` has no bound", name.text))
                 .add_help("add a bound: `from = …`, `to = …`, `max_speed = …`, `max_effort = …`");

@@ -4,7 +4,7 @@ use super::arguments::Arguments;
 use super::keys::{ElementArgumentKeys, check_argument_relations};
 use super::{Collision, Contact, Description, Expr, ExprKind, GROUND, Name};
 use crate::diag::Diagnostics;
-use crate::language::{Callable, Method, OtherKind};
+use crate::language::{BodyOrInertiaMethod, Callable, OtherKind};
 
 /// Help text with the syntax of a contact between links of a file.
 pub const CONTACT_HELP: &str =
@@ -50,10 +50,10 @@ pub fn read_contact(
 
 /// Returns the link of `link.collision()`, or `Some(None)` for `collision()`, which denotes all links of the
 /// file. `link.collision(2)` is the third shape of a link.
-pub fn collision_link(surface: &Expr) -> Option<Option<&Expr>> {
+pub fn link_in_collision_expression(surface: &Expr) -> Option<Option<&Expr>> {
     match &surface.kind {
         ExprKind::Method(link, word, arguments)
-            if word.id == Some(Method::Collision) && arguments.len() < 2 =>
+            if word.id == Some(BodyOrInertiaMethod::Collision) && arguments.len() < 2 =>
         {
             Some(Some(link.as_ref()))
         }
@@ -67,7 +67,7 @@ pub fn collision_link(surface: &Expr) -> Option<Option<&Expr>> {
 /// Returns the indices of the shapes that `link.collision()`, `link.collision(2)` or `collision()` denotes;
 /// `None` for other surfaces.
 pub fn select_collisions(surface: &Expr, all: &[Collision]) -> Option<Vec<usize>> {
-    let link = collision_link(surface)?.and_then(Expr::as_name);
+    let link = link_in_collision_expression(surface)?.and_then(Expr::as_name);
     let is_shape_of_link =
         |part: &Collision| link.map_or(part.on.body.text != GROUND, |name| part.on.body.text == name);
     let parts = (0..all.len()).filter(|k| is_shape_of_link(&all[*k]));
@@ -84,6 +84,6 @@ pub fn select_collisions(surface: &Expr, all: &[Collision]) -> Option<Vec<usize>
 impl Contact {
     /// Whether the contact uses collision geometry of a file.
     pub fn uses_file_collisions(&self) -> bool {
-        [&self.first, &self.second].into_iter().any(|surface| collision_link(surface).is_some())
+        [&self.first, &self.second].into_iter().any(|surface| link_in_collision_expression(surface).is_some())
     }
 }

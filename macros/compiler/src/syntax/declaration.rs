@@ -20,7 +20,7 @@ fn source_text_of_token(span: Span) -> Option<String> {
 }
 
 /// Returns the source text of the attribute and of the struct with its fields.
-pub fn declaration_text(item: &ItemStruct, fields: Option<String>) -> Option<String> {
+pub fn mechanism_declaration_text(item: &ItemStruct, fields: Option<String>) -> Option<String> {
     let attribute = source_text_of_token(Span::call_site()).filter(|text| text.starts_with("#["))?;
     let fields = fields?;
     let (visibility, name) = (item.vis.to_token_stream().to_string(), &item.ident);
@@ -49,7 +49,7 @@ fn remove_indentation(text: &str) -> String {
 pub fn field_doc_paragraphs(item: &ItemStruct) -> Vec<(String, String)> {
     let field_doc_paragraph = |field: &syn::Field| {
         let name = field.ident.as_ref()?.to_string();
-        let paragraph = first_paragraph(&field.attrs);
+        let paragraph = first_doc_paragraph(&field.attrs);
         (!paragraph.is_empty()).then(|| (name.trim_start_matches("r#").to_string(), paragraph))
     };
     item.fields.iter().filter_map(field_doc_paragraph).collect()
@@ -66,7 +66,7 @@ pub fn doc_lines(attributes: &[Attribute]) -> impl Iterator<Item = String> {
     })
 }
 
-fn first_paragraph(attributes: &[Attribute]) -> String {
+fn first_doc_paragraph(attributes: &[Attribute]) -> String {
     let all = doc_lines(attributes).collect::<Vec<_>>().join("\n");
     let lines = all.lines().map(str::trim).skip_while(|line| line.is_empty());
     lines.take_while(|line| !line.is_empty()).collect::<Vec<_>>().join(" ")

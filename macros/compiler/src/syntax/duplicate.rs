@@ -7,7 +7,11 @@ use syn::{Attribute, Item, ItemStruct, Stmt};
 
 /// Returns the struct without fields if the source file defines its name in the same scope before the
 /// attribute's line, counted from one.
-pub fn duplicate_struct_without_fields(item: &TokenStream, text: &str, line: usize) -> Option<TokenStream> {
+pub fn struct_without_fields_if_duplicate(
+    item: &TokenStream,
+    text: &str,
+    line: usize,
+) -> Option<TokenStream> {
     let positions_of_definitions = |ident: &str| {
         let definition = format!("struct {ident}");
         let is_end_of_word =
@@ -28,7 +32,7 @@ pub fn duplicate_struct_without_fields(item: &TokenStream, text: &str, line: usi
     let mut scopes = vec![syn::parse_file(text).ok()?.items];
     while let Some(items) = scopes.pop() {
         let same = items.iter().filter(|item| match item {
-            Item::Struct(item) => item.ident == ident && !item.attrs.iter().any(is_conditional),
+            Item::Struct(item) => item.ident == ident && !item.attrs.iter().any(is_cfg_attribute),
             _ => false,
         });
         if same.count() > 1 {
@@ -49,7 +53,7 @@ pub fn duplicate_struct_without_fields(item: &TokenStream, text: &str, line: usi
 }
 
 /// Returns whether an attribute may remove the struct, as `cfg` does.
-fn is_conditional(attribute: &Attribute) -> bool {
+fn is_cfg_attribute(attribute: &Attribute) -> bool {
     attribute.path().is_ident("cfg") || attribute.path().is_ident("cfg_attr")
 }
 
@@ -58,7 +62,7 @@ mod tests {
     use super::*;
 
     fn is_second_definition(text: &str, line: usize) -> bool {
-        duplicate_struct_without_fields(
+        struct_without_fields_if_duplicate(
             &quote!(
                 pub struct Cart {
                     mass: f64,

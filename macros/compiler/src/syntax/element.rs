@@ -83,7 +83,7 @@ pub fn report_unknown_type(field: &Name, kind: &str, place: impl Into<Place>, cx
 }
 
 /// Whether a type is an element of the language or that of parameters.
-pub fn is_element(kind: &str) -> bool {
+pub fn is_element_or_parameter_type(kind: &str) -> bool {
     kind == "f64" || ElementKind::find_by_name(kind).is_some()
 }
 
@@ -110,7 +110,7 @@ pub fn read_element(
     let word = given.map(attribute_name).or(expected.first().map(ToString::to_string));
     let arguments = match &word {
         Some(word) => attribute_arguments(name, (&kind_name, element), word, attributes, cx),
-        None => arguments_without_attribute(name, &kind_name, attributes, cx),
+        None => empty_arguments_without_attribute(name, &kind_name, attributes, cx),
     };
     let Some(arguments) = arguments else { return };
     let mut arguments = arguments.with_owner(name);
@@ -159,8 +159,8 @@ pub const CONDITION_HELP: &str =
 
 /// Whether an attribute removes a parameter conditionally, or conditionally adds an attribute of the
 /// language.
-pub fn is_conditional(attribute: &Attribute) -> bool {
-    let has_conditional_attribute = |list: &syn::MetaList| {
+pub fn is_conditional_attribute(attribute: &Attribute) -> bool {
+    let adds_conditional_or_language_attribute = |list: &syn::MetaList| {
         let parse = syn::punctuated::Punctuated::<Meta, syn::Token![,]>::parse_terminated;
         let parts = parse.parse2(list.tokens.clone()).unwrap_or_default();
         parts.iter().skip(1).any(|part| {
@@ -170,7 +170,7 @@ pub fn is_conditional(attribute: &Attribute) -> bool {
     };
     match &attribute.meta {
         meta if meta.path().is_ident("cfg") => true,
-        Meta::List(list) if list.path.is_ident("cfg_attr") => has_conditional_attribute(list),
+        Meta::List(list) if list.path.is_ident("cfg_attr") => adds_conditional_or_language_attribute(list),
         _ => false,
     }
 }
@@ -322,7 +322,7 @@ fn attribute_name(attribute: &Attribute) -> String {
 }
 
 /// Returns empty arguments for an element without an attribute, and reports attributes of the language.
-fn arguments_without_attribute(
+fn empty_arguments_without_attribute(
     name: &Name,
     kind: &str,
     attributes: &[Attribute],
@@ -383,7 +383,11 @@ fn read_auxiliary_element(
             let (on, at) =
                 (arguments.take_expression_of_key("on", cx), arguments.take_expression_of_key("at", cx));
             if let [body, place] = arguments.positional_arguments() {
-                let help = format!("write `#[point(on = {}, at = {})]`", body.to_source(), place.to_source());
+                let help = format!(
+                    "write `#[point(on = {}, at = {})]`",
+                    body.short_source_text(),
+                    place.short_source_text()
+                );
                 cx.report_error(body.place.extend_to_end_of(&place.place), "expected `name = value`")
                     .add_help(help);
                 return;

@@ -32,7 +32,7 @@ struct ExpressionSize {
 impl ExpressionSize {
     const ONE: Self = Self { depth: 1, length: 1 };
 
-    fn max(self, other: Self) -> Self {
+    fn componentwise_maximum_size(self, other: Self) -> Self {
         Self { depth: self.depth.max(other.depth), length: self.length.max(other.length) }
     }
 
@@ -62,7 +62,7 @@ pub fn name_from_identifier(ident: &Ident) -> Name {
     Name { text: ident.unraw().to_string(), place: ident.span().into() }
 }
 
-fn check_expression_size(
+fn expression_within_size_limits(
     kind: ExprKind,
     place: Place,
     size: ExpressionSize,
@@ -138,9 +138,9 @@ fn binary_expression(
     left: ParsedExpression,
     right: ParsedExpression,
 ) -> syn::Result<ParsedExpression> {
-    let size = left.1.size_of_longer_chain().max(right.1.size_of_nested_expression());
+    let size = left.1.size_of_longer_chain().componentwise_maximum_size(right.1.size_of_nested_expression());
     let place = left.0.place.extend_to_end_of(&right.0.place);
-    check_expression_size(
+    expression_within_size_limits(
         ExprKind::Binary(op, Box::new(left.0), Box::new(right.0), operator.into()),
         place,
         size,
@@ -152,7 +152,7 @@ fn parse_unary(input: ParseStream<'_>) -> syn::Result<ParsedExpression> {
         let span = input.parse::<Token![-]>()?.span;
         let inner = parse_operand(span, input, parse_unary)?;
         let place = Place::from(span).extend_to_end_of(&inner.0.place);
-        return check_expression_size(
+        return expression_within_size_limits(
             ExprKind::Neg(Box::new(inner.0)),
             place,
             inner.1.size_of_nested_expression(),
@@ -177,14 +177,14 @@ fn parse_postfix(input: ParseStream<'_>) -> syn::Result<ParsedExpression> {
                 false => parse_parenthesised_arguments(input)?,
             };
             let place = inner.0.place.extend_to_end_of(&close.into());
-            check_expression_size(
+            expression_within_size_limits(
                 ExprKind::Method(Box::new(inner.0), Member::new(member, arguments.len()), arguments),
                 place,
-                size.max(arguments_size.size_of_nested_expression()),
+                size.componentwise_maximum_size(arguments_size.size_of_nested_expression()),
             )?
         } else {
             let place = inner.0.place.extend_to_end_of(&member.place);
-            check_expression_size(ExprKind::Field(Box::new(inner.0), member), place, size)?
+            expression_within_size_limits(ExprKind::Field(Box::new(inner.0), member), place, size)?
         };
     }
     Ok(inner)
@@ -206,14 +206,22 @@ fn parse_primary(input: ParseStream<'_>) -> syn::Result<ParsedExpression> {
             let item = items.remove(0);
             return Ok(ParsedExpression(Expr { place, ..item }, size.size_of_nested_expression()));
         }
-        return check_expression_size(ExprKind::Tuple(items), place, size.size_of_nested_expression());
+        return expression_within_size_limits(
+            ExprKind::Tuple(items),
+            place,
+            size.size_of_nested_expression(),
+        );
     }
     if input.peek(token::Bracket) {
         let content;
         let span = bracketed!(content in input).span;
         let place = Place::from(span.open()).extend_to_end_of(&span.close().into());
         let (items, size, _) = parse_list(&content)?;
-        return check_expression_size(ExprKind::Array(items), place, size.size_of_nested_expression());
+        return expression_within_size_limits(
+            ExprKind::Array(items),
+            place,
+            size.size_of_nested_expression(),
+        );
     }
     if input.peek(Token![if]) {
         return parse_if_expression(input);
@@ -224,13 +232,13 @@ fn parse_primary(input: ParseStream<'_>) -> syn::Result<ParsedExpression> {
         let place = name.place.clone();
         if input.peek(token::Paren) {
             let (arguments, size, close) = parse_parenthesised_arguments(input)?;
-            return check_expression_size(
+            return expression_within_size_limits(
                 ExprKind::Call(Callee::new(name), arguments),
                 place.extend_to_end_of(&close.into()),
                 size.size_of_nested_expression(),
             );
         }
-        return check_expression_size(ExprKind::Name(name.text), place, ExpressionSize::ONE);
+        return expression_within_size_limits(ExprKind::Name(name.text), place, ExpressionSize::ONE);
     }
     Err(missing_expression_error(input))
 }
@@ -269,12 +277,17 @@ fn parse_if_expression(input: ParseStream<'_>) -> syn::Result<ParsedExpression> 
         }
     };
     for PiecewiseBranch { keyword, left, right, is_less, piece } in branches.into_iter().rev() {
-        let size = left.1.max(right.1).max(piece.1).max(last.1).size_of_nested_expression();
+        let size = left
+            .1
+            .componentwise_maximum_size(right.1)
+            .componentwise_maximum_size(piece.1)
+            .componentwise_maximum_size(last.1)
+            .size_of_nested_expression();
         let pieces = if is_less { [piece.0, last.0] } else { [last.0, piece.0] };
         let arguments = [left.0, right.0].into_iter().chain(pieces).collect();
         let place = Place::from(keyword);
         let name = Name { text: IF.to_string(), place: place.clone() };
-        last = check_expression_size(
+        last = expression_within_size_limits(
             ExprKind::Call(Callee::new(name), arguments),
             place.extend_to_end_of(&end),
             size,
@@ -402,7 +415,7 @@ fn parse_number(input: ParseStream<'_>) -> syn::Result<ParsedExpression> {
         Lit::Float(n) => (n.base10_digits().to_string(), n.suffix().to_string()),
         // Words; the error at their use is more helpful.
         Lit::Bool(b) => {
-            return check_expression_size(
+            return expression_within_size_limits(
                 ExprKind::Name(b.value.to_string()),
                 b.span.into(),
                 ExpressionSize::ONE,
@@ -430,7 +443,7 @@ fn parse_number(input: ParseStream<'_>) -> syn::Result<ParsedExpression> {
     }
     match digits.parse::<f64>() {
         Ok(value) if value.is_finite() => {
-            check_expression_size(ExprKind::Number(value), literal.span().into(), ExpressionSize::ONE)
+            expression_within_size_limits(ExprKind::Number(value), literal.span().into(), ExpressionSize::ONE)
         }
         _ => {
             Err(syn_error_with_help(literal.span(), "this number is too large", "the largest is about 1e308"))
@@ -469,7 +482,7 @@ fn parse_list(content: ParseStream<'_>) -> syn::Result<(Vec<Expr>, ExpressionSiz
     let (mut items, mut size, mut trailing) = (Vec::new(), ExpressionSize::default(), false);
     while !content.is_empty() {
         let item = parse_sum(content)?;
-        size = size.max(item.1);
+        size = size.componentwise_maximum_size(item.1);
         items.push(item.0);
         trailing = content.peek(Token![,]);
         if trailing {

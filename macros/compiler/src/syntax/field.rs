@@ -1,7 +1,7 @@
 //! Parsing of the struct's fields: parameters, tables, states and elements.
 
 use super::expression::name_from_identifier;
-use super::mechanism::Shell;
+use super::mechanism::GeneratedStruct;
 use super::parameter::{check_parameter_attributes, read_units, span_of_type, type_name, unify_scalar_types};
 use super::state::read_state;
 use super::table::{read_table, table_variable_count};
@@ -15,7 +15,7 @@ pub fn read_field(
     mut field: Field,
     generic: Option<&str>,
     description: &mut Description,
-    shell: &mut Shell,
+    shell: &mut GeneratedStruct,
     scalar: &mut Option<(ScalarType, Place)>,
     cx: &mut Diagnostics,
 ) {
@@ -60,9 +60,11 @@ pub fn read_field(
 }
 
 /// Whether a type is that of a parameter or an element.
-pub fn is_known(kind: &Ident, generic: Option<&str>) -> bool {
+pub fn is_known_field_type(kind: &Ident, generic: Option<&str>) -> bool {
     let kind = kind.to_string();
-    matches!(kind.as_str(), "f64" | "f32") || Some(kind.as_str()) == generic || element::is_element(&kind)
+    matches!(kind.as_str(), "f64" | "f32")
+        || Some(kind.as_str()) == generic
+        || element::is_element_or_parameter_type(&kind)
 }
 
 /// Reports fields with equal names and returns these names. The Rust compiler also reports them, but later

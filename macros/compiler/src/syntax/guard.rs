@@ -33,7 +33,7 @@ struct OpenBracket {
 }
 
 impl OpenBracket {
-    fn outermost_bracket(tokens: &TokenStream, has_types: bool) -> Self {
+    fn bracket_around_stream(tokens: &TokenStream, has_types: bool) -> Self {
         Self { tokens: tokens.clone().into_iter(), depth: 1, outer: 0, has_types, after_hash: false }
     }
 }
@@ -41,12 +41,12 @@ impl OpenBracket {
 /// Reports an attribute's arguments that are nested too deeply or have too many tokens. Returns whether
 /// parsing may continue.
 pub fn check_argument_size(tokens: &TokenStream, cx: &mut Diagnostics) -> bool {
-    check_token_limits(OpenBracket::outermost_bracket(tokens, false), cx)
+    check_token_limits(OpenBracket::bracket_around_stream(tokens, false), cx)
 }
 
 /// Reports an item whose tokens are nested too deeply or are too many. Returns whether parsing may continue.
 pub fn report_oversized_item(tokens: &TokenStream, cx: &mut Diagnostics) -> bool {
-    check_token_limits(OpenBracket::outermost_bracket(tokens, true), cx)
+    check_token_limits(OpenBracket::bracket_around_stream(tokens, true), cx)
 }
 
 fn check_token_limits(outermost: OpenBracket, cx: &mut Diagnostics) -> bool {

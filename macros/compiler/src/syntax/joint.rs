@@ -3,7 +3,7 @@
 use super::arguments::Arguments;
 use super::{Endpoint, Expr, ExprKind, Joint, Name, words};
 use crate::diag::Diagnostics;
-use crate::language::{JointKind, Method};
+use crate::language::{BodyOrInertiaMethod, JointKind};
 
 /// Reads the declaration of a joint from its attribute.
 pub fn read_joint(
@@ -12,7 +12,7 @@ pub fn read_joint(
     arguments: &mut Arguments,
     cx: &mut Diagnostics,
 ) -> Option<Joint> {
-    let ends = arguments.take_relation(&["about", "along", "pitch", "lead", "branch"], cx);
+    let ends = arguments.require_joint_relation(&["about", "along", "pitch", "lead", "branch"], cx);
     let about = read_axes("about", arguments, cx);
     let along = read_axes("along", arguments, cx);
     let pitch = arguments.take_expression_of_key("pitch", cx);
@@ -84,35 +84,42 @@ fn read_joint_endpoint(e: Expr, cx: &mut Diagnostics) -> Option<Endpoint> {
         ExprKind::Method(inner, method, mut arguments) => {
             let mut end = read_joint_endpoint(*inner, cx)?;
             match method.id {
-                Some(Method::At) if arguments.len() == 1 && end.at.is_none() && end.rotated.is_empty() => {
+                Some(BodyOrInertiaMethod::At)
+                    if arguments.len() == 1 && end.at.is_none() && end.rotated.is_empty() =>
+                {
                     end.at = arguments.pop();
                     Some(end)
                 }
-                Some(Method::At) if arguments.len() == 1 => {
+                Some(BodyOrInertiaMethod::At) if arguments.len() == 1 => {
                     cx.report_error(method.place, "`.at(…)` is allowed once, before `.rotated(…)`")
                         .add_help("write `body.at(a + b).rotated(z(angle))`");
                     None
                 }
-                Some(Method::At) => {
+                Some(BodyOrInertiaMethod::At) => {
                     let help = match arguments.as_slice() {
                         [a, b, c] => {
-                            format!("write `.at([{}, {}, {}])`", a.to_source(), b.to_source(), c.to_source())
+                            format!(
+                                "write `.at([{}, {}, {}])`",
+                                a.short_source_text(),
+                                b.short_source_text(),
+                                c.short_source_text()
+                            )
                         }
                         _ => "write `body.at(length * x)`".to_string(),
                     };
                     cx.report_error(method.place, "expected one vector in `.at(…)`").add_help(help);
                     None
                 }
-                Some(Method::Rotated) if !arguments.is_empty() => {
+                Some(BodyOrInertiaMethod::Rotated) if !arguments.is_empty() => {
                     end.rotated.extend(arguments);
                     Some(end)
                 }
-                Some(Method::Rotated) => {
+                Some(BodyOrInertiaMethod::Rotated) => {
                     cx.report_error(method.place, "`.rotated()` has no rotation")
                         .add_help("write `body.rotated(z(angle))`");
                     None
                 }
-                Some(Method::Collision | Method::Surface(_)) | None => {
+                Some(BodyOrInertiaMethod::Collision | BodyOrInertiaMethod::Surface(_)) | None => {
                     let other = method.text.as_str();
                     let error =
                         cx.report_error(method.place, format!("unknown method `.{other}(…)` of a body"));
@@ -124,7 +131,7 @@ fn read_joint_endpoint(e: Expr, cx: &mut Diagnostics) -> Option<Endpoint> {
         kind => {
             let help = match kind {
                 ExprKind::Field(base, _) | ExprKind::Binary(_, base, ..) if base.as_name().is_some() => {
-                    format!("a point of a body is written `{}.at(vector)`", base.to_source())
+                    format!("a point of a body is written `{}.at(vector)`", base.short_source_text())
                 }
                 _ => "write `ground -> cart`, `arm.at(length * x) -> hand`".to_string(),
             };

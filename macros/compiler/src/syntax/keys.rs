@@ -49,7 +49,7 @@ impl<'a> ElementArgumentKeys<'a> {
                 }
                 _ => arguments.take_expression_of_key(key.name(), cx),
             };
-            let value = value.filter(|e| *key != Key::Restitution || check_restitution(e, cx));
+            let value = value.filter(|e| *key != Key::Restitution || check_poisson_argument_count(e, cx));
             given.extend(value.map(|value| (*key, value)));
         }
         (WrittenArguments(given), is_complete)
@@ -58,7 +58,7 @@ impl<'a> ElementArgumentKeys<'a> {
 
 /// Checks that `poisson(…)`, a coefficient of restitution as a ratio of impulses, has one argument. Otherwise
 /// reports an error and returns false.
-fn check_restitution(e: &Expr, cx: &mut Diagnostics) -> bool {
+fn check_poisson_argument_count(e: &Expr, cx: &mut Diagnostics) -> bool {
     match &e.kind {
         ExprKind::Call(word, list) if word.id == Some(Callable::Poisson) && list.len() != 1 => {
             cx.report_error(word.place.clone(), "`poisson` takes one coefficient")
@@ -78,8 +78,8 @@ pub fn check_argument_relations(
 ) -> bool {
     let mut reported: Vec<&ArgumentRelation> = Vec::new();
     for relation in relations {
-        let Some(e) = given.get(relation.key) else { continue };
-        let has_other = relation.others.iter().any(|key| given.get(*key).is_some());
+        let Some(e) = given.expression_of_key(relation.key) else { continue };
+        let has_other = relation.others.iter().any(|key| given.expression_of_key(*key).is_some());
         let is_reported_relation =
             |known: &&ArgumentRelation| known.key == relation.key || known.message == relation.message;
         if has_other != relation.needs && !reported.iter().any(is_reported_relation) {

@@ -35,7 +35,7 @@ impl ElementListLengths {
             return lists;
         }
         cx.set_element_list_names(lists.lists.iter().map(|(name, _)| name.clone()).collect());
-        lists.check_names(named_fields.named.iter(), cx);
+        lists.report_field_named_index(named_fields.named.iter(), cx);
         let fields_before = std::mem::take(&mut named_fields.named);
         for (mut field, count) in fields_before.into_iter().zip(counts) {
             let Some(count) = count else {
@@ -84,7 +84,11 @@ impl ElementListLengths {
     }
 
     /// Reports a field that has the name of the list index.
-    fn check_names<'a>(&self, mut fields: impl Iterator<Item = &'a Field>, cx: &mut Diagnostics) {
+    fn report_field_named_index<'a>(
+        &self,
+        mut fields: impl Iterator<Item = &'a Field>,
+        cx: &mut Diagnostics,
+    ) {
         let other = fields.find(|field| field.ident.as_ref().is_some_and(|ident| ident == INDEX));
         if let Some(ident) = other.and_then(|field| field.ident.as_ref()) {
             cx.report_error(ident.span(), format!("`{INDEX}` counts the elements of lists"))

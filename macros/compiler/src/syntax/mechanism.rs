@@ -12,7 +12,7 @@ pub struct Mechanism {
     /// Description of the mechanism: its declared elements.
     pub description: Description,
     /// Struct without the fields that declare elements.
-    pub shell: Shell,
+    pub shell: GeneratedStruct,
     /// Options of the robot file to import, if there is one.
     pub file: Option<FileOptions>,
     /// Optional functions that are generated on request.
@@ -22,7 +22,7 @@ pub struct Mechanism {
 }
 
 /// Generated struct: the declared one without the fields that are elements.
-pub struct Shell {
+pub struct GeneratedStruct {
     /// Documentation and other attributes that remain on the struct.
     pub attributes: Vec<Attribute>,
     /// Visibility of the struct.
@@ -47,7 +47,7 @@ pub struct Shell {
     pub runtime: Option<syn::Path>,
 }
 
-impl Shell {
+impl GeneratedStruct {
     /// Returns the lines of the documentation comments.
     pub fn documentation_lines(&self) -> String {
         let lines: Vec<String> = doc_lines(&self.attributes).map(|line| line.trim().to_string()).collect();
@@ -214,7 +214,7 @@ pub struct FileOptions {
 
 impl FileOptions {
     /// Returns the options that hold for a file if none are written.
-    pub fn with_defaults(format: FileFormat, path: Name) -> FileOptions {
+    pub fn default_options_of_file(format: FileFormat, path: Name) -> FileOptions {
         FileOptions {
             format,
             path,

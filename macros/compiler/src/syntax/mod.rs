@@ -31,20 +31,20 @@ mod table;
 pub mod words;
 
 pub use crate::language::{
-    ElementKind, ForceKind, JointKind, Key, Method, OtherKind, SurfaceId, SurfaceSize,
+    BodyOrInertiaMethod, ElementKind, ForceKind, JointKind, Key, OtherKind, SurfaceId, SurfaceSize,
 };
 pub use attribute::parse_mechanism;
 pub use description::{
     Action, Base, BinaryOp, Body, Callee, Collision, Constraint, ConstraintKind, Contact, Definition,
-    Description, Drive, DriveLaw, DriveQuantity, DriveTarget, Endpoint, Equilibrium, Expr, ExprKind,
-    FileContact, FileContactKind, Formulation, Frame, FreeCoordinate, InertiaOption, Joint, Limit, Member,
-    Mesh, MeshVertices, MimicRelation, Name, Particle, Point, Rank, ScalarType, Shape, Table, Target, Term,
-    Visual, Wrench, WrittenArguments, restitution_coefficient,
+    Description, Endpoint, Equilibrium, Expr, ExprKind, FileContact, FileContactKind, FileForceElement,
+    FileForceLaw, FileForceQuantity, FileForceTarget, Formulation, Frame, FreeCoordinate, InertiaOption,
+    Joint, LanguageWord, Limit, Member, Mesh, MeshVertices, MimicRelation, Name, Particle, Point, Rank,
+    ScalarType, Shape, Table, Target, Visual, Wrench, WrittenArguments, restitution_value_and_kind,
 };
-pub use duplicate::duplicate_struct_without_fields;
+pub use duplicate::struct_without_fields_if_duplicate;
 pub use mechanism::{
-    ContactOption, FileFormat, FileInputSource, FileOptions, GROUND, LimitOption, LoopOption, Mechanism,
-    ROOT_JOINT, Shell,
+    ContactOption, FileFormat, FileInputSource, FileOptions, GROUND, GeneratedStruct, LimitOption,
+    LoopOption, Mechanism, ROOT_JOINT,
 };
 pub use request::{EquationsOption, RequestOption, RequestedFunctions, SkippedPasses};
 pub use separate::insert_missing_commas;

@@ -43,7 +43,7 @@ const OPTIONS: [&str; 23] = [
 ];
 
 /// Reads the arguments of `#[mechanism(…)]`. Returns the options of the imported robot file, if there is one.
-pub fn read_options(
+pub fn read_mechanism_options(
     arguments: TokenStream,
     description: &mut Description,
     scalar: &mut Option<(ScalarType, Place)>,
@@ -88,14 +88,14 @@ pub fn read_options(
         "stops" => LimitOption::Stops,
         _ => LimitOption::Honour,
     });
-    let mut choice = |key: &str, words: [&str; 2]| {
+    let mut is_second_word_chosen = |key: &str, words: [&str; 2]| {
         arguments.take_choice(key, &words, cx).map(|(word, _)| word == words[1])
     };
-    let base = choice("base", ["fixed", "free"]).unwrap_or(false);
-    let ignore_passive = choice("passive", ["honour", "ignore"]).unwrap_or(false);
-    let independent = choice("mimic", ["follow", "independent"]).unwrap_or(false);
-    requests.target_only = choice("processor", ["detect", "target"]).unwrap_or(false);
-    requests.reproducible = choice("arithmetic", ["fast", "reproducible"]).unwrap_or(false);
+    let base = is_second_word_chosen("base", ["fixed", "free"]).unwrap_or(false);
+    let ignore_passive = is_second_word_chosen("passive", ["honour", "ignore"]).unwrap_or(false);
+    let independent = is_second_word_chosen("mimic", ["follow", "independent"]).unwrap_or(false);
+    requests.target_only = is_second_word_chosen("processor", ["detect", "target"]).unwrap_or(false);
+    requests.reproducible = is_second_word_chosen("arithmetic", ["fast", "reproducible"]).unwrap_or(false);
     description.inertias = read_inertia_option(&mut arguments, &requested, description, cx);
     requests.skipped = skipped::read_skipped_passes(&mut arguments, cx);
     let printed = arguments.take_choice("equations", &EquationsOption::WORDS.map(|(word, _)| word), cx);
@@ -122,7 +122,7 @@ pub fn read_options(
         parameters,
         contacts,
         loops,
-        ..FileOptions::with_defaults(format, path)
+        ..FileOptions::default_options_of_file(format, path)
     })
 }
 

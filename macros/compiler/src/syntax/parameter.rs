@@ -74,7 +74,7 @@ pub fn read_units(attributes: &[Attribute], description: &mut Description, cx: &
 
 pub fn check_parameter_attributes(field: &Name, attributes: &[Attribute], cx: &mut Diagnostics) {
     for attribute in attributes {
-        if element::is_conditional(attribute) {
+        if element::is_conditional_attribute(attribute) {
             cx.report_error(attribute.path().span(), "a parameter cannot be conditional")
                 .add_help(element::CONDITION_HELP);
         }

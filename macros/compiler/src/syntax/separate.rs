@@ -16,7 +16,7 @@ pub fn insert_missing_commas(item: &TokenStream) -> Option<(TokenStream, syn::Er
     let mut tokens: Vec<TokenTree> = item.clone().into_iter().collect();
     let Some(TokenTree::Group(body)) = tokens.pop() else { return None };
     if body.delimiter() != Delimiter::Brace
-        || !guard::report_oversized_item(item, &mut Diagnostics::discarded_diagnostics())
+        || !guard::report_oversized_item(item, &mut Diagnostics::unprinted_diagnostics())
     {
         return None;
     }
@@ -84,7 +84,7 @@ fn parse_colon(input: ParseStream<'_>) -> syn::Result<(Token![:], Option<Span>)>
 /// element.
 fn swapped_type_and_name(name: &Ident, kind: &Type) -> Option<(Type, Ident)> {
     let other: Ident = syn::parse2(kind.to_token_stream()).ok()?;
-    let is_language_element_type = |word: &Ident| element::is_element(&word.to_string());
+    let is_language_element_type = |word: &Ident| element::is_element_or_parameter_type(&word.to_string());
     (is_language_element_type(name) && !is_language_element_type(&other))
         .then(|| (Type::Verbatim(name.to_token_stream()), other))
 }

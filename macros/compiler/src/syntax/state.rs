@@ -1,6 +1,6 @@
 //! Fields that are states of first order: parameters that change.
 
-use super::mechanism::Shell;
+use super::mechanism::GeneratedStruct;
 use super::parameter::span_of_type;
 use super::{Definition, Description, Name, RATE_OF_STATE, Rank, ScalarType, element};
 use crate::diag::Diagnostics;
@@ -14,10 +14,10 @@ pub fn read_state(
     kind: Ident,
     name: &Name,
     description: &mut Description,
-    shell: &mut Shell,
+    shell: &mut GeneratedStruct,
     cx: &mut Diagnostics,
 ) {
-    if let Some(conditional) = field.attrs.iter().find(|a| element::is_conditional(a)) {
+    if let Some(conditional) = field.attrs.iter().find(|a| element::is_conditional_attribute(a)) {
         cx.report_error(span_of_attribute_path(conditional), "a state cannot be conditional")
             .add_help(element::CONDITION_HELP);
         return;
@@ -50,7 +50,7 @@ fn span_of_attribute_path(attribute: &syn::Attribute) -> Span {
 }
 
 /// Sets the types of the fields of states to the scalar type of the mechanism.
-pub fn set_state_types(description: &Description, shell: &mut Shell) {
+pub fn set_state_types(description: &Description, shell: &mut GeneratedStruct) {
     for field in &mut shell.parameters {
         let Some(ident) = &field.ident else { continue };
         let text = ident.to_string();

@@ -1,6 +1,6 @@
 //! Parsing of fields that are interpolation tables.
 
-use super::mechanism::Shell;
+use super::mechanism::GeneratedStruct;
 use super::parameter::{check_parameter_attributes, span_of_type};
 use super::{Description, Name, Table, element};
 use crate::diag::Diagnostics;
@@ -38,7 +38,7 @@ pub fn read_table(
     name: &Name,
     variables: Option<usize>,
     description: &mut Description,
-    shell: &mut Shell,
+    shell: &mut GeneratedStruct,
     cx: &mut Diagnostics,
 ) {
     check_parameter_attributes(name, &field.attrs, cx);

@@ -3,7 +3,7 @@
 
 use super::{BinaryOp, Expr, ExprKind};
 use crate::diag::{Diagnostic, nearest_candidate};
-use crate::language::{Callable, ElementKind, FunctionId, Rotation, Solid, Words};
+use crate::language::{Callable, ElementKind, FunctionId, Rotation, Solid, WordsWithMeanings};
 
 mod tables;
 
@@ -11,7 +11,7 @@ pub use tables::*;
 
 /// Returns the synonyms of an element's arguments with their meanings; `kind` is the type name of the
 /// element.
-fn argument_synonyms(kind: &str) -> Words {
+fn argument_synonyms(kind: &str) -> WordsWithMeanings {
     match ElementKind::find_by_name(kind) {
         Some(element) => element.argument_synonyms(),
         None if kind == ATTRIBUTE => OPTIONS,
@@ -62,10 +62,10 @@ pub fn meaning_of_word(words: MistakenWords<'_>, word: &str, known: &[&str]) -> 
     let key = normalise_word(word);
     let is_applicable_meaning =
         |meaning: &str| meaning.contains(' ') || known.is_empty() || known.contains(&meaning);
-    let has_synonym = |(synonyms, meaning): &&(&str, &str)| {
+    let has_word_among_synonyms = |(synonyms, meaning): &&(&str, &str)| {
         is_applicable_meaning(meaning) && synonyms.split(' ').any(|one| one == key)
     };
-    words.iter().find(has_synonym).map(|(_, meaning)| *meaning)
+    words.iter().find(has_word_among_synonyms).map(|(_, meaning)| *meaning)
 }
 
 /// Whether a word is an option of `#[mechanism]` without a value.
@@ -152,21 +152,21 @@ pub fn coordinate_of_rate_name<'a>(word: &str, coordinates: &[&'a str]) -> Optio
 /// Returns the coordinate of a name that looks like its acceleration: `hinge_ddot`, `ddhinge`.
 pub fn coordinate_of_acceleration_name<'a>(word: &str, coordinates: &[&'a str]) -> Option<&'a str> {
     let ends = ["ddot", "dotdot", "dd", "acc", "accel", "acceleration", "pp"];
-    let ends_with_rate_suffix = |stem: &str| {
+    let ends_with_acceleration_suffix = |stem: &str| {
         ends.iter().any(|end| word.strip_prefix(stem).map(normalise_word).as_deref() == Some(end))
     };
-    let begins_with_rate_prefix = |stem: &str| {
+    let begins_with_acceleration_prefix = |stem: &str| {
         word.strip_suffix(stem).is_some_and(|before| matches!(before, "dd" | "dd_" | "ddot_" | "a_" | "acc_"))
     };
     coordinates
         .iter()
-        .filter(|name| ends_with_rate_suffix(name) || begins_with_rate_prefix(name))
+        .filter(|name| ends_with_acceleration_suffix(name) || begins_with_acceleration_prefix(name))
         .max_by_key(|name| name.len())
         .copied()
 }
 
 /// Whether a word looks like a Rust constant. Values of constants are unknown when a macro runs.
-pub fn is_constant(word: &str) -> bool {
+pub fn looks_like_rust_constant(word: &str) -> bool {
     word.chars().any(|c| c.is_ascii_uppercase()) && !word.chars().any(|c| c.is_ascii_lowercase())
 }
 
@@ -182,7 +182,7 @@ pub fn suggest_name(diagnostic: &mut Diagnostic, name: &str, known: &[&str], coo
     } else if add_word_meaning_as_help(diagnostic, NAMES, name, &[]) {
     } else if nearest_candidate(name, known).is_some() {
         diagnostic.suggest_name(name, known.iter().copied());
-    } else if is_constant(name) {
+    } else if looks_like_rust_constant(name) {
         let parameter = name.to_lowercase();
         diagnostic.add_help(format!(
             "the macro cannot see the value of a constant: declare a parameter, `{parameter}: f64`, or write \
@@ -199,7 +199,7 @@ pub fn suggest_name(diagnostic: &mut Diagnostic, name: &str, known: &[&str], coo
 
 impl Expr {
     /// Returns the expression as the user would write it, or `…` if it is long.
-    pub fn to_source(&self) -> String {
+    pub fn short_source_text(&self) -> String {
         let text = expression_text(self);
         if text.chars().count() > 60 { "…".to_string() } else { text }
     }
@@ -211,13 +211,14 @@ impl Expr {
 }
 
 fn expression_text(e: &Expr) -> String {
-    let spell_list = |items: &[Expr]| items.iter().map(expression_text).collect::<Vec<_>>().join(", ");
+    let comma_separated_expressions =
+        |items: &[Expr]| items.iter().map(expression_text).collect::<Vec<_>>().join(", ");
     match &e.kind {
         ExprKind::Number(n) => n.to_string(),
         ExprKind::Name(name) => name.clone(),
         ExprKind::Field(base, member) => format!("{}.{}", expression_text(base), member.text),
         ExprKind::Method(base, method, items) => {
-            format!("{}.{}({})", expression_text(base), method.text, spell_list(items))
+            format!("{}.{}({})", expression_text(base), method.text, comma_separated_expressions(items))
         }
         ExprKind::Call(function, items) if function.id == Some(Callable::If) => match items.as_slice() {
             [a, b, below, above] => {
@@ -231,7 +232,9 @@ fn expression_text(e: &Expr) -> String {
             }
             _ => function.text.clone(),
         },
-        ExprKind::Call(function, items) => format!("{}({})", function.text, spell_list(items)),
+        ExprKind::Call(function, items) => {
+            format!("{}({})", function.text, comma_separated_expressions(items))
+        }
         ExprKind::Neg(inner) => format!("-{}", expression_text(inner)),
         ExprKind::Binary(op, left, right, _) => {
             let is_sum_expression =
@@ -256,8 +259,8 @@ fn expression_text(e: &Expr) -> String {
                 parenthesised_operand_text(right, together)
             )
         }
-        ExprKind::Tuple(items) => format!("({})", spell_list(items)),
-        ExprKind::Array(items) => format!("[{}]", spell_list(items)),
+        ExprKind::Tuple(items) => format!("({})", comma_separated_expressions(items)),
+        ExprKind::Array(items) => format!("[{}]", comma_separated_expressions(items)),
         ExprKind::Text(text) => format!("{text:?}"),
     }
 }

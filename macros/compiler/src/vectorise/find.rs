@@ -17,7 +17,7 @@ pub struct LimbGroup {
 }
 
 /// Shapes of subtrees: the kinds of their joints, link by link.
-struct Shapes {
+struct SubtreeShapes {
     children: Vec<Vec<usize>>,
     /// Shape of the subtree of each link: equal for isomorphic subtrees, zero for subtrees that cannot be
     /// limbs.
@@ -26,7 +26,7 @@ struct Shapes {
 
 /// Finds the groups of isomorphic limbs. No link is in two groups.
 pub fn find_limb_groups(model: &Model<'_>, joints: &[Joint<'_>]) -> Vec<LimbGroup> {
-    let shapes = Shapes::new(model, joints);
+    let shapes = SubtreeShapes::new(model, joints);
     let mut groups = Vec::new();
     let mut taken = vec![false; joints.len()];
     let roots: Vec<usize> = (0..joints.len()).filter(|k| joints[*k].parent.is_none()).collect();
@@ -39,8 +39,8 @@ pub fn find_limb_groups(model: &Model<'_>, joints: &[Joint<'_>]) -> Vec<LimbGrou
     groups
 }
 
-impl Shapes {
-    fn new(model: &Model<'_>, joints: &[Joint<'_>]) -> Shapes {
+impl SubtreeShapes {
+    fn new(model: &Model<'_>, joints: &[Joint<'_>]) -> SubtreeShapes {
         let mut children = vec![Vec::new(); joints.len()];
         for (k, joint) in joints.iter().enumerate() {
             if let Some(parent) = joint.parent {
@@ -58,7 +58,7 @@ impl Shapes {
             let next = known.len() + 1;
             shape[k] = *known.entry((kind, below)).or_insert(next);
         }
-        Shapes { children, shape }
+        SubtreeShapes { children, shape }
     }
 
     /// Adds the groups of isomorphic limbs that begin at the children of one link.

@@ -6,7 +6,7 @@ use super::find::LimbGroup;
 use super::merge::LaneMerger;
 use super::velocities::{LaneVelocity, VectorisedVelocityPosition, pair_velocities};
 use crate::expr::{Expr, Rotation, Vec3};
-use crate::kinematics::{Dof, Joint, Spatial};
+use crate::kinematics::{Dof, Joint, SpatialVector};
 use crate::mechanism::{InV, Inertia, Link, LinkId, Model, Quantity};
 use std::collections::BTreeMap;
 
@@ -104,7 +104,7 @@ impl<'g> VectorisedMechanism<'g> {
                 (dof.ratio == first.dofs[d].ratio)
                     .then(|| dof.subspace.times_scalar(self.model.graph.num(*sign)))
             });
-            let subspaces: Vec<Spatial<'g>> = of_lanes.collect::<Option<_>>()?;
+            let subspaces: Vec<SpatialVector<'g>> = of_lanes.collect::<Option<_>>()?;
             dofs.push(Dof { index, ratio: dof.ratio, subspace: merged_spatial(&subspaces, merge)? });
         }
         if lanes.len() == 1 {
@@ -157,7 +157,7 @@ impl<'g> VectorisedMechanism<'g> {
 
     /// Returns the symbols of a quantity, such as the velocities, one entry per velocity of the vectorised
     /// mechanism.
-    pub fn symbols_of_quantity(&self, of: impl Fn(usize) -> Quantity) -> Vec<Expr<'g>> {
+    pub fn lane_symbols_per_velocity(&self, of: impl Fn(usize) -> Quantity) -> Vec<Expr<'g>> {
         let g = self.model.graph;
         let gather_lane_symbols = |velocity: &LaneVelocity| {
             let symbols: Vec<_> = velocity.lanes.iter().map(|k| of(*k).symbol()).collect();
@@ -209,24 +209,24 @@ impl<'g> VectorisedMechanism<'g> {
     /// Groups matrix rows of the whole mechanism by limb: the first rows of all limbs of a group correspond,
     /// then the second rows, and so on. Returns `None` unless each row belongs to one limb of a group and all
     /// limbs have the same number of rows.
-    pub fn limb_rows(&self, rows: &[Vec<Expr<'g>>]) -> Option<Vec<LimbRows>> {
+    pub fn group_rows_by_limb(&self, rows: &[Vec<Expr<'g>>]) -> Option<Vec<LimbRows>> {
         let groups = self.group_of_each_velocity();
         let mut found: BTreeMap<usize, Vec<Vec<usize>>> = BTreeMap::new();
         for (i, row) in rows.iter().enumerate() {
             let LimbLane { group, lane, width } = self.limb_of_row(row, &groups)?;
             found.entry(group).or_insert_with(|| vec![Vec::new(); width])[lane].push(i);
         }
-        let limb_rows = |(group, lanes): (usize, Vec<Vec<usize>>)| {
+        let rows_of_limb_group = |(group, lanes): (usize, Vec<Vec<usize>>)| {
             let count = lanes.first()?.len();
-            let row_of_limb_lanes = |k: usize| lanes.iter().map(|numbers| numbers[k]).collect();
+            let corresponding_rows_of_limbs = |k: usize| lanes.iter().map(|numbers| numbers[k]).collect();
             let is_even = lanes.iter().all(|numbers| numbers.len() == count);
             is_even.then(|| LimbRows {
                 group,
                 width: lanes.len(),
-                rows: (0..count).map(row_of_limb_lanes).collect(),
+                rows: (0..count).map(corresponding_rows_of_limbs).collect(),
             })
         };
-        found.into_iter().map(limb_rows).collect()
+        found.into_iter().map(rows_of_limb_group).collect()
     }
 
     /// Merges corresponding matrix rows of the whole mechanism, one per SIMD lane, into one row of the
@@ -234,10 +234,12 @@ impl<'g> VectorisedMechanism<'g> {
     /// different structures.
     pub fn merged_rows(&self, rows: &[&[Expr<'g>]], merge: &mut LaneMerger<'g>) -> Option<Vec<Expr<'g>>> {
         let merged_limb_entry = |velocity: &LaneVelocity| {
-            let lane_entry =
+            let row_entry_of_lane =
                 |(lane, row): (usize, &&[Expr<'g>])| self.velocity_of_lane(velocity, lane).map(|k| row[k]);
-            let lanes =
-                rows.iter().enumerate().map(|of_lane| lane_entry(of_lane).unwrap_or(self.model.graph.zero()));
+            let lanes = rows
+                .iter()
+                .enumerate()
+                .map(|of_lane| row_entry_of_lane(of_lane).unwrap_or(self.model.graph.zero()));
             merge.merge_lanes(&lanes.collect::<Vec<_>>())
         };
         self.velocities.iter().map(merged_limb_entry).collect()
@@ -278,17 +280,17 @@ impl<'g> VectorisedMechanism<'g> {
 
     /// Combines matrix rows of the whole mechanism, one for each limb of a group, as SIMD lanes of one row of
     /// the vectorised mechanism.
-    pub fn merge_into_lanes(&self, rows: &[&[Expr<'g>]]) -> Vec<Expr<'g>> {
+    pub fn merge_limb_rows_into_lanes(&self, rows: &[&[Expr<'g>]]) -> Vec<Expr<'g>> {
         let g = self.model.graph;
         let merge = &mut LaneMerger::new(g);
         let entry_in_lanes = |velocity: &LaneVelocity| {
             // Velocities outside the limbs are common to all rows; those of other groups are absent.
-            let lane_entry = |(lane, row): (usize, &&[Expr<'g>])| match self.velocity_of_lane(velocity, lane)
-            {
-                Some(k) => row[k],
-                None => g.zero(),
-            };
-            let lanes: Vec<Expr<'g>> = rows.iter().enumerate().map(lane_entry).collect();
+            let row_entry_of_lane =
+                |(lane, row): (usize, &&[Expr<'g>])| match self.velocity_of_lane(velocity, lane) {
+                    Some(k) => row[k],
+                    None => g.zero(),
+                };
+            let lanes: Vec<Expr<'g>> = rows.iter().enumerate().map(row_entry_of_lane).collect();
             let all = merge.merge_lanes(&lanes).unwrap_or_else(|| join_lanes(&lanes));
             if velocity.lanes.len() == 1 { all } else { g.lanes_from_constants(&velocity.signs) * all }
         };
@@ -299,13 +301,13 @@ impl<'g> VectorisedMechanism<'g> {
     /// velocity in the vectorised mechanism, and its lane.
     pub fn scatter_lanes_to_velocities(&self, of: impl Fn(usize, usize) -> Expr<'g>) -> Vec<Expr<'g>> {
         let g = self.model.graph;
-        let value_at_location = |place: &VectorisedVelocityPosition| match place.lane {
+        let expression_at_vectorised_position = |place: &VectorisedVelocityPosition| match place.lane {
             Some(k) => {
                 (g.lanes_from_constants(&self.velocities[place.index].signs) * of(place.index, k)).lane(k)
             }
             None => of(place.index, 0),
         };
-        self.places.iter().map(value_at_location).collect()
+        self.places.iter().map(expression_at_vectorised_position).collect()
     }
 
     /// Returns the passive forces, one entry per velocity of the vectorised mechanism.
@@ -317,13 +319,13 @@ impl<'g> VectorisedMechanism<'g> {
     /// whole mechanism.
     pub fn scatter_to_velocities(&self, values: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let g = self.model.graph;
-        let value_at_location = |place: &VectorisedVelocityPosition| match place.lane {
+        let expression_at_vectorised_position = |place: &VectorisedVelocityPosition| match place.lane {
             Some(k) => {
                 (g.lanes_from_constants(&self.velocities[place.index].signs) * values[place.index]).lane(k)
             }
             None => values[place.index],
         };
-        self.places.iter().map(value_at_location).collect()
+        self.places.iter().map(expression_at_vectorised_position).collect()
     }
 
     /// Returns, for each velocity of the whole mechanism, whether it is outside the limbs and `marked` is
@@ -405,10 +407,10 @@ fn merged_vector<'g>(lanes: &[Vec3<'g>], merge: &mut LaneMerger<'g>) -> Option<V
     Some(vector)
 }
 
-fn merged_spatial<'g>(lanes: &[Spatial<'g>], merge: &mut LaneMerger<'g>) -> Option<Spatial<'g>> {
+fn merged_spatial<'g>(lanes: &[SpatialVector<'g>], merge: &mut LaneMerger<'g>) -> Option<SpatialVector<'g>> {
     let linear: Vec<Vec3<'g>> = lanes.iter().map(|s| s.linear).collect();
     let angular: Vec<Vec3<'g>> = lanes.iter().map(|s| s.angular).collect();
-    Some(Spatial { linear: merged_vector(&linear, merge)?, angular: merged_vector(&angular, merge)? })
+    Some(SpatialVector { linear: merged_vector(&linear, merge)?, angular: merged_vector(&angular, merge)? })
 }
 
 fn merged_inertia<'g>(lanes: &[Inertia<'g>], merge: &mut LaneMerger<'g>) -> Option<Inertia<'g>> {

@@ -54,7 +54,7 @@ impl<'g> LaneMerger<'g> {
     /// filler has the symbols of lane `to`, so that they are gathered once. The expression itself is the
     /// filler if it has symbols of other lanes too, or may be infinite, since zero times infinity is not
     /// zero.
-    fn lane_filler(&self, e: Expr<'g>, from: usize, to: usize) -> Expr<'g> {
+    fn filler_for_missing_term(&self, e: Expr<'g>, from: usize, to: usize) -> Expr<'g> {
         let lane_partners_of_symbol = |s: Symbol| self.partners.iter().find(|list| list.contains(&s));
         let is_symbol_of_lane =
             |s: &Symbol| lane_partners_of_symbol(*s).is_none_or(|list| list.get(from) == Some(s));
@@ -111,7 +111,7 @@ impl<'g> LaneMerger<'g> {
         for lane in 0..parts.len() {
             if lanes[lane].constant_value().is_some() {
                 // The lane is constant: its factor is zero.
-                parts[lane].2 = self.lane_filler(parts[moving].2, moving, lane);
+                parts[lane].2 = self.filler_for_missing_term(parts[moving].2, moving, lane);
             }
         }
         if parts.iter().any(|(offset, factor, _)| (*offset, *factor) != (0.0, 1.0)) {

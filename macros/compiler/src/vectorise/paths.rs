@@ -2,7 +2,7 @@
 //! one path to the root are transformed by the same joints from the innermost of them on.
 
 use crate::expr::{Expr, Vec3};
-use crate::kinematics::{Joint, Spatial};
+use crate::kinematics::{Joint, SpatialVector};
 
 /// A quantity that a degree of freedom propagates to the root.
 pub trait PropagatedQuantity<'g>: Sized {
@@ -15,11 +15,11 @@ pub trait PropagatedQuantity<'g>: Sized {
 /// Algorithm that processes quantities while they are propagated from degrees of freedom to the root.
 pub trait RootPropagationVisitor<'g> {
     /// Type of the quantity that is propagated from the links to the root.
-    type Item: PropagatedQuantity<'g>;
+    type Quantity: PropagatedQuantity<'g>;
     /// Returns the quantity that a degree of freedom propagates, in the frame of its own link.
-    fn start(&mut self, dof: usize) -> Self::Item;
+    fn initial_quantity_of_dof(&mut self, dof: usize) -> Self::Quantity;
     /// Processes a group of degrees of freedom that has been transformed to another link.
-    fn visit(&mut self, group: &LaneGroup<Self::Item>);
+    fn process_transformed_group(&mut self, group: &LaneGroup<Self::Quantity>);
 }
 
 /// Propagated quantities of several degrees of freedom, as SIMD lanes.
@@ -119,10 +119,10 @@ impl<'a, 'g> PathsToRoot<'a, 'g> {
         &self,
         group: &[usize],
         visitor: &mut V,
-    ) -> LaneGroup<V::Item> {
+    ) -> LaneGroup<V::Quantity> {
         if let [dof] = *group {
             let link = self.links[dof];
-            let (width, item) = (self.widths[link], visitor.start(dof));
+            let (width, item) = (self.widths[link], visitor.initial_quantity_of_dof(dof));
             return LaneGroup { link, item, members: vec![Some(dof)], width, link_width: width };
         }
         let half = group.len().next_power_of_two() / 2;
@@ -144,16 +144,16 @@ impl<'a, 'g> PathsToRoot<'a, 'g> {
     /// Transforms a group link by link to a link nearer to the root, or to the root.
     fn transform_group_to_ancestor<V: RootPropagationVisitor<'g>>(
         &self,
-        mut group: LaneGroup<V::Item>,
+        mut group: LaneGroup<V::Quantity>,
         to: Option<usize>,
         visitor: &mut V,
-    ) -> LaneGroup<V::Item> {
+    ) -> LaneGroup<V::Quantity> {
         while Some(group.link) != to
             && let Some(parent) = self.joints[group.link].parent
         {
             group.item = group.item.to_parent(&group.repeat_joint_for_members(&self.joints[group.link]));
             (group.link, group.link_width) = (parent.0, self.widths[parent.0]);
-            visitor.visit(&group);
+            visitor.process_transformed_group(&group);
         }
         group
     }
@@ -209,9 +209,9 @@ fn lane_range(e: Expr<'_>, first: usize, count: usize) -> Expr<'_> {
     }
 }
 
-impl<'g> PropagatedQuantity<'g> for Spatial<'g> {
+impl<'g> PropagatedQuantity<'g> for SpatialVector<'g> {
     fn zip_with(&self, other: &Self, f: &dyn Fn(Expr<'g>, Expr<'g>) -> Expr<'g>) -> Self {
-        Spatial {
+        SpatialVector {
             linear: self.linear.zip_with(&other.linear, f),
             angular: self.angular.zip_with(&other.angular, f),
         }
@@ -228,6 +228,6 @@ impl<'g> PropagatedQuantity<'g> for Vec3<'g> {
     }
 
     fn to_parent(&self, joint: &Joint<'g>) -> Self {
-        joint.rotation.to_parent(*self)
+        joint.rotation.vector_in_parent_axes(*self)
     }
 }

@@ -1,7 +1,7 @@
 //! Correspondence between the velocities of a mechanism and those of its vectorised form, in which identical
 //! limbs are SIMD lanes.
 
-use crate::kinematics::{Joint, Spatial};
+use crate::kinematics::{Joint, SpatialVector};
 use crate::mechanism::Model;
 
 /// Velocity of the vectorised mechanism, one or several velocities of the whole one.
@@ -62,7 +62,7 @@ pub fn pair_velocities(
 
 /// Returns minus one if two joint motion subspaces have opposite signs in the first component that is a
 /// nonzero number in both.
-fn relative_sign_of_subspaces(a: &Spatial<'_>, b: &Spatial<'_>) -> f64 {
+fn relative_sign_of_subspaces(a: &SpatialVector<'_>, b: &SpatialVector<'_>) -> f64 {
     let pairs = a.linear.0.iter().chain(&a.angular.0).zip(b.linear.0.iter().chain(&b.angular.0));
     let mut products = pairs.filter_map(|(x, y)| Some(x.constant_value()? * y.constant_value()?));
     let first = products.find(|product| *product != 0.0);

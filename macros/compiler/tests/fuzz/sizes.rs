@@ -1,6 +1,6 @@
 //! Tests of mechanisms with many elements, deep nesting, and coefficients near the limits of their range.
 
-use super::{expand_and_check, with_little_stack};
+use super::{expand_and_check, run_with_little_stack};
 use linkwork_compiler::expand;
 use proc_macro2::TokenStream;
 use std::path::Path;
@@ -386,7 +386,7 @@ fn nested_input_does_not_overflow_the_stack() {
         add("closures", format!("struct S<T> where {} f64: A {{ a: T }}", "fn() -> ".repeat(n)));
     }
     for (name, item) in cases {
-        with_little_stack(move || expand_and_check(TokenStream::new(), item.parse().unwrap(), &name));
+        run_with_little_stack(move || expand_and_check(TokenStream::new(), item.parse().unwrap(), &name));
     }
 }
 
@@ -398,6 +398,6 @@ fn expand_cases_with_little_stack(cases: Vec<(&'static str, String)>) {
             expand_and_check(TokenStream::new(), tokens, name);
             println!("{:>8.2?} {name}", start.elapsed());
         };
-        with_little_stack(expand_and_print_time);
+        run_with_little_stack(expand_and_print_time);
     }
 }

@@ -7,7 +7,7 @@
 
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
-use linkwork_compiler::{compile, read_source};
+use linkwork_compiler::{compile, parse_source_and_import};
 use proc_macro2::{Span, TokenStream, TokenTree};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -37,11 +37,11 @@ fn messages_of_mechanism(source: &str) -> Vec<ShownMessage> {
     });
     let mut cx = Diagnostics::new();
     if let Some(source) =
-        read_source(arguments.unwrap_or_default(), tokens.collect(), &tables_folder(), &mut cx)
+        parse_source_and_import(arguments.unwrap_or_default(), tokens.collect(), &tables_folder(), &mut cx)
     {
         compile(&source, &Graph::new(), &mut cx);
     }
-    let texts = cx.messages();
+    let texts = cx.full_message_texts();
     // Each error is `::core::compile_error! { "…" }`: eight tokens, of which the first and the last have the
     // spans of the error.
     let errors: Vec<Span> = cx.into_tokens().into_iter().map(|token| token.span()).collect();
@@ -67,11 +67,14 @@ fn table_row_with_messages(before: &str, row: &str, after: &str) -> String {
         if k < before.len() || k > before.len() + row.len() {
             continue;
         }
-        let is_marked_range = |one: &&ShownMessage| one.from < one.to;
-        let ends = found.iter().filter(is_marked_range).filter(|one| one.to == k && one.from >= before.len());
+        let has_nonempty_range = |one: &&ShownMessage| one.from < one.to;
+        let ends =
+            found.iter().filter(has_nonempty_range).filter(|one| one.to == k && one.from >= before.len());
         marked.extend(ends.map(|_| MARKS[1]));
-        let starts =
-            found.iter().filter(is_marked_range).filter(|one| one.from == k && k < before.len() + row.len());
+        let starts = found
+            .iter()
+            .filter(has_nonempty_range)
+            .filter(|one| one.from == k && k < before.len() + row.len());
         marked.extend(starts.map(|_| MARKS[0]));
         if k < before.len() + row.len() {
             marked.push(letter);

@@ -9,7 +9,7 @@ use linkwork_compiler::expr::{Expr, Graph, Mat3, Vec3};
 use linkwork_compiler::mechanism::{Coordinate, Link, LinkId, Model, Motion, Pose, Quantity};
 use linkwork_compiler::resolve::build_model;
 use linkwork_compiler::syntax::{FileFormat, FileOptions, Name};
-use linkwork_compiler::{import, read_source};
+use linkwork_compiler::{import, parse_source_and_import};
 use std::path::Path;
 
 /// Compares the model of a mechanism with these fields; indentation is ignored.
@@ -35,13 +35,13 @@ fn assert_same_trimmed_lines(actual: &str, expected: &str) {
 fn model_text_or_messages(fields: &str, urdf: Option<&str>) -> String {
     let mut cx = Diagnostics::new();
     let item = format!("struct S {{ {fields} }}").parse().unwrap();
-    let Some(mut source) = read_source("".parse().unwrap(), item, Path::new(""), &mut cx) else {
-        return cx.messages().join("\n");
+    let Some(mut source) = parse_source_and_import("".parse().unwrap(), item, Path::new(""), &mut cx) else {
+        return cx.full_message_texts().join("\n");
     };
     if let Some(text) = urdf {
         let place = source.mechanism.description.name.place.clone();
         let path = Name { text: "r.urdf".to_string(), place };
-        let options = FileOptions::with_defaults(FileFormat::Urdf, path);
+        let options = FileOptions::default_options_of_file(FileFormat::Urdf, path);
         if let Some(imported) = import::import_file(text, Path::new(""), &options, &mut cx) {
             source.mechanism.description.bodies = imported.bodies;
             source.mechanism.description.joints = imported.joints;
@@ -52,7 +52,7 @@ fn model_text_or_messages(fields: &str, urdf: Option<&str>) -> String {
         if cx.is_empty() { build_model(&source.mechanism.description, &graph, &mut cx) } else { None };
     match model {
         Some(model) => model_text(&model),
-        None => cx.messages().join("\n"),
+        None => cx.full_message_texts().join("\n"),
     }
 }
 

@@ -3,7 +3,7 @@
 use super::value_of_expression;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
-use linkwork_compiler::read_source;
+use linkwork_compiler::parse_source_and_import;
 use linkwork_compiler::resolve::build_model;
 use std::path::Path;
 
@@ -12,10 +12,11 @@ fn inertia_of_solid(solid: &str) -> [[f64; 3]; 3] {
     let mut cx = Diagnostics::new();
     let item =
         format!("struct S {{ #[body(mass = 1, inertia = {solid})] b: Body, #[joint(ground -> b)] j: Free }}");
-    let source = read_source("".parse().unwrap(), item.parse().unwrap(), Path::new(""), &mut cx).unwrap();
+    let source =
+        parse_source_and_import("".parse().unwrap(), item.parse().unwrap(), Path::new(""), &mut cx).unwrap();
     let graph = Graph::new();
     let model = build_model(&source.mechanism.description, &graph, &mut cx);
-    let model = model.unwrap_or_else(|| panic!("{solid}: {:?}", cx.messages()));
+    let model = model.unwrap_or_else(|| panic!("{solid}: {:?}", cx.full_message_texts()));
     model.links[0].inertia.tensor.full_matrix().0.map(|row| row.map(value_of_expression))
 }
 

@@ -3,7 +3,7 @@
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::language::{ArgumentKind, SurfaceId, SurfaceSize};
-use linkwork_compiler::read_source;
+use linkwork_compiler::parse_source_and_import;
 use linkwork_compiler::resolve::build_model;
 use std::path::Path;
 
@@ -24,24 +24,25 @@ fn surface_expression_text(body: &str, surface: Option<SurfaceId>) -> String {
 }
 
 /// Returns the number of contact points of a mechanism with a pair of surfaces, and its errors.
-fn points_and_errors_of_surface_pair(pair: &str) -> (usize, String) {
+fn contact_point_count_and_errors(pair: &str) -> (usize, String) {
     let coordinates = if pair.contains("surface(") { "u: Coordinate, w: Coordinate," } else { "" };
     let item = format!(
         "struct S {{ {coordinates} #[body(mass = 1, inertia = sphere(1, 1))] b: Body,
             #[joint(ground.at([0.1, 0.2, 0.5]) -> b)] j: Free, {pair} }}"
     );
     let mut cx = Diagnostics::new();
-    let source = read_source("".parse().unwrap(), item.parse().unwrap(), Path::new(""), &mut cx).unwrap();
+    let source =
+        parse_source_and_import("".parse().unwrap(), item.parse().unwrap(), Path::new(""), &mut cx).unwrap();
     let graph = Graph::new();
     let model = build_model(&source.mechanism.description, &graph, &mut cx);
-    (model.map_or(0, |model| model.contacts.len()), cx.messages().join("\n"))
+    (model.map_or(0, |model| model.contacts.len()), cx.full_message_texts().join("\n"))
 }
 
 #[test]
 fn every_listed_pair_of_surfaces_is_supported() {
     let mut wrong = Vec::new();
     let mut check = |attribute: &str, is_listed: bool| {
-        let (_, found) = points_and_errors_of_surface_pair(attribute);
+        let (_, found) = contact_point_count_and_errors(attribute);
         if found.contains("the contact point of these surfaces is not supported") == is_listed {
             wrong.push(format!("{attribute}: {found}"));
         }
@@ -81,7 +82,7 @@ fn contact_points_of_surfaces_are_counted_in_advance() {
             let [moving, base] =
                 [("b", above), ("ground", Some(below))].map(|(body, id)| surface_expression_text(body, id));
             let pair = format!("#[contact({moving}, {base})] c: Contact");
-            let (points, errors) = points_and_errors_of_surface_pair(&pair);
+            let (points, errors) = contact_point_count_and_errors(&pair);
             if counted != Some(points).filter(|points| *points > 0) {
                 wrong.push(format!("{pair}: {counted:?} instead of {points} {errors}"));
             }

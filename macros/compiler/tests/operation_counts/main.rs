@@ -2,11 +2,11 @@
 //! parameters, of a robot, and of a robot whose limbs are SIMD lanes. All other counts are upper bounds with
 //! a margin of two per cent for changes of the cost model.
 
-use linkwork_compiler::derive::Output;
+use linkwork_compiler::derive::DerivationOutput;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::lower::{Op, Program};
-use linkwork_compiler::{compile, read_source};
+use linkwork_compiler::{compile, parse_source_and_import};
 use std::path::Path;
 
 /// Compiles a mechanism and returns the programs of the named functions.
@@ -16,7 +16,7 @@ fn compile_named_programs(arguments: &str, item: &str, functions: &[&str]) -> Ve
 
 /// Returns the programs of these functions, and the number of expressions in the graph.
 fn programs_and_nodes(arguments: &str, item: &str, functions: &[&str]) -> (Vec<Program>, usize) {
-    with_compiled_output(arguments, item, |output, graph| {
+    call_with_compiled_output(arguments, item, |output, graph| {
         let program_of_function_name = |name: &&str| {
             let f = output.functions.iter().find(|f| f.name == *name).expect("the function is generated");
             f.program.clone()
@@ -26,14 +26,18 @@ fn programs_and_nodes(arguments: &str, item: &str, functions: &[&str]) -> (Vec<P
 }
 
 /// Compiles a mechanism and passes the result, with its graph of expressions, to a function.
-fn with_compiled_output<R>(arguments: &str, item: &str, f: impl FnOnce(&Output, &Graph) -> R) -> R {
+fn call_with_compiled_output<R>(
+    arguments: &str,
+    item: &str,
+    f: impl FnOnce(&DerivationOutput, &Graph) -> R,
+) -> R {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let parse_tokens = |text: &str| text.parse().expect("the source is Rust");
     let mut cx = Diagnostics::new();
     let graph = Graph::new();
-    let source = read_source(parse_tokens(arguments), parse_tokens(item), folder, &mut cx);
+    let source = parse_source_and_import(parse_tokens(arguments), parse_tokens(item), folder, &mut cx);
     let Some((_, output)) = source.and_then(|s| compile(&s, &graph, &mut cx)) else {
-        panic!("{}", cx.messages().join("\n"));
+        panic!("{}", cx.full_message_texts().join("\n"));
     };
     f(&output, &graph)
 }
@@ -207,16 +211,16 @@ fn operation_counts_grow_with_the_expected_power() {
     let lines = ["inverse_dynamics", "bias_forces", "forward_dynamics"];
     let parabolas = ["mass_matrix", "inverse_dynamics_derivatives", "coriolis_matrix"];
     let all = [&lines[..], &parabolas].concat();
-    let count_operations = |n: usize| {
+    let chain_operation_and_node_counts = |n: usize| {
         let (programs, nodes) =
             programs_and_nodes("gravity = -9.81 * z, derivatives", &chain_source(n, false), &all);
         let mut totals: Vec<f64> = programs.iter().map(|p| p.counts.total_operations() as f64).collect();
         totals.push(nodes as f64);
         totals
     };
-    let [a, b, c] = [16, 20, 24].map(count_operations);
+    let [a, b, c] = [16, 20, 24].map(chain_operation_and_node_counts);
     for n in [32, 48, 64] {
-        let (found, s) = (count_operations(n), (n as f64 - 16.0) / 4.0);
+        let (found, s) = (chain_operation_and_node_counts(n), (n as f64 - 16.0) / 4.0);
         for (k, name) in all.iter().enumerate() {
             let bend = c[k] - 2.0 * b[k] + a[k];
             assert!(k >= lines.len() || bend == 0.0, "{name} is a line");
@@ -300,9 +304,10 @@ fn prepared_operation_counts(arguments: &str) -> [usize; 4] {
     let graph = Graph::new();
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let item = "pub struct Robot;".parse().expect("the source is Rust");
-    let source = read_source(arguments.parse().expect("the source is Rust"), item, folder, &mut cx);
+    let source =
+        parse_source_and_import(arguments.parse().expect("the source is Rust"), item, folder, &mut cx);
     let Some((_, output)) = source.and_then(|s| compile(&s, &graph, &mut cx)) else {
-        panic!("{}", cx.messages().join("\n"));
+        panic!("{}", cx.full_message_texts().join("\n"));
     };
     let functions = output.prepared.expect("it is asked for").functions;
     MAIN.map(|name| {
@@ -324,22 +329,23 @@ fn prepared_mass_parameters_add_few_operations() {
         let file = format!("urdf = \"../../models/urdf/{name}.urdf\"{options}");
         let plain: [usize; 4] = robot_operation_counts(name, options, false)[0];
         let all = prepared_operation_counts(&format!("{file}, prepare, parameters = {parameters}"));
-        let is_close = |found: [usize; 4]| found.iter().zip(plain).all(|(n, plain)| 10 * n <= 11 * plain);
-        assert!(is_close(all), "{name}: {all:?}, of the file's figures {plain:?}");
+        let are_counts_within_ten_percent =
+            |found: [usize; 4]| found.iter().zip(plain).all(|(n, plain)| 10 * n <= 11 * plain);
+        assert!(are_counts_within_ten_percent(all), "{name}: {all:?}, of the file's figures {plain:?}");
     }
 }
 
 #[test]
 fn loops_over_links_compute_the_derivatives_of_long_chains_only() {
     let has_loops = |n: usize| {
-        with_compiled_output("derivatives", &chain_source(n, false), |output, _| {
+        call_with_compiled_output("derivatives", &chain_source(n, false), |output, _| {
             output.functions.iter().any(|f| f.loops.is_some())
         })
     };
     assert!(!has_loops(6));
     assert!(has_loops(20));
     let quadruped = r#"urdf = "../../models/urdf/solo12.urdf", base = free, derivatives"#;
-    assert!(with_compiled_output(quadruped, "struct Solo;", |output, _| {
+    assert!(call_with_compiled_output(quadruped, "struct Solo;", |output, _| {
         output.functions.iter().all(|f| f.loops.is_none())
     }));
 }

@@ -1,15 +1,15 @@
 //! Mechanisms that combine loops, moving frames, prescribed bases, rolling, inerters, user-defined
 //! coordinates and velocity constraints, with the masses and elements of the oracle's model.
 
+use crate::combined::CombinedMechanism;
 use crate::combined::Law::{Central, Dashpot, Growing, Inerter, Push, Spring};
-use crate::combined::Row;
 
 const NONE: [f64; 3] = [0.0; 3];
 const DOWN: [f64; 3] = [0.3, -0.2, -9.81];
 
 /// Test mechanisms with rare combinations of features, each with a model for the oracle.
-pub const ROWS: &[Row] = &[
-    Row {
+pub const ROWS: &[CombinedMechanism] = &[
+    CombinedMechanism {
         name: "a loop on a driven frame with central gravity",
         gravity: NONE,
         charts: "sss",
@@ -34,7 +34,7 @@ pub const ROWS: &[Row] = &[
         ],
         elements: &[(Central(1.2), "norm(r(pebble / ground.at([5, 1, 2])))")],
     },
-    Row {
+    CombinedMechanism {
         name: "a cardan joint on a massive base that is driven, with an inerter to the ground",
         gravity: DOWN,
         charts: "ss",
@@ -51,7 +51,7 @@ pub const ROWS: &[Row] = &[
             (Inerter(0.15), "cross.second"),
         ],
     },
-    Row {
+    CombinedMechanism {
         name: "an inerter across a loop that a ball closes",
         gravity: DOWN,
         charts: "sbss",
@@ -76,7 +76,7 @@ pub const ROWS: &[Row] = &[
             (Dashpot(0.4), "norm(r(a / b.at([1, 1, 1])))"),
         ],
     },
-    Row {
+    CombinedMechanism {
         name: "a sphere that rolls on a moving tray",
         gravity: DOWN,
         charts: "sf",
@@ -91,7 +91,7 @@ pub const ROWS: &[Row] = &[
         masses: &[("tray", 2.0, NONE, [0.3, 0.4, 0.5]), ("ball", 0.8, NONE, [0.05, 0.05, 0.05])],
         elements: &[(Spring(3.0, 0.2), "norm(r(tray.at([1, 0, 0]) / ball))")],
     },
-    Row {
+    CombinedMechanism {
         name: "slots on a rotating frame with a cable between them",
         gravity: DOWN,
         charts: "ssss",
@@ -111,7 +111,7 @@ pub const ROWS: &[Row] = &[
         ],
         elements: &[(Spring(4.0, 0.1), "left.slide")],
     },
-    Row {
+    CombinedMechanism {
         name: "coordinates without bodies in a potential that grows",
         gravity: DOWN,
         charts: "sss",
@@ -133,7 +133,7 @@ pub const ROWS: &[Row] = &[
             (Dashpot(0.2), "pin"),
         ],
     },
-    Row {
+    CombinedMechanism {
         name: "alike limbs on a free base, with springs between them and an inerter to the ground",
         gravity: DOWN,
         charts: "fsss",
@@ -163,7 +163,7 @@ pub const ROWS: &[Row] = &[
             (Inerter(0.7), "norm(r(c / ground.at([1, 0, 0])))"),
         ],
     },
-    Row {
+    CombinedMechanism {
         name: "a screw and a planar joint on a driven base, geared, with a force along a moving line",
         gravity: DOWN,
         charts: "ssss",
@@ -186,7 +186,7 @@ pub const ROWS: &[Row] = &[
             (Spring(2.0, 0.4), "norm(r(nut.at([0, 1, 0]) / ground))"),
         ],
     },
-    Row {
+    CombinedMechanism {
         name: "a universal joint that closes a loop with a driven side, and charges",
         gravity: DOWN,
         charts: "ssssss",
@@ -217,7 +217,7 @@ pub const ROWS: &[Row] = &[
             (Inerter(0.5), "norm(r(a.at([0, 1, 0]) / wall))"),
         ],
     },
-    Row {
+    CombinedMechanism {
         name: "a disk that rolls on a plank that swings, with a pendulum on its hub",
         gravity: DOWN,
         charts: "sfs",
@@ -242,7 +242,7 @@ pub const ROWS: &[Row] = &[
             (Dashpot(0.3), "norm(r(plank.at([1, 0, 0]) / bob.at([0, 0, -0.5])))"),
         ],
     },
-    Row {
+    CombinedMechanism {
         name: "a body placed by coordinates that carries a ball, with a driven rod to the ground",
         gravity: DOWN,
         charts: "ssb",
@@ -268,7 +268,7 @@ pub const ROWS: &[Row] = &[
             (Spring(2.0, 0.5), "norm(r(insect / cradle.at([0, 0, 1])))"),
         ],
     },
-    Row {
+    CombinedMechanism {
         name: "two free bodies that an inerter, gravity and a welded arm connect",
         gravity: NONE,
         charts: "ff",

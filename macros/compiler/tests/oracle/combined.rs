@@ -6,11 +6,11 @@
 
 use crate::combinations::ROWS;
 use crate::random::Random;
-use linkwork_compiler::derive::Output;
+use linkwork_compiler::derive::DerivationOutput;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::mechanism::Quantity;
-use linkwork_compiler::{compile, read_source};
+use linkwork_compiler::{compile, parse_source_and_import};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -20,7 +20,7 @@ const H: f64 = 4e-3;
 const TOLERANCE: f64 = 1e-7;
 
 /// Body or particle: name, mass, centre of mass, moments of inertia about its own axes.
-pub type Mass = (&'static str, f64, [f64; 3], [f64; 3]);
+pub type BodyOrParticle = (&'static str, f64, [f64; 3], [f64; 3]);
 
 /// Law of an element that acts along a scalar expression of the language.
 #[derive(Clone, Copy)]
@@ -36,13 +36,13 @@ pub enum Law {
 }
 
 /// Source of a test mechanism, and the model of it that the oracle evaluates.
-pub struct Row {
+pub struct CombinedMechanism {
     pub name: &'static str,
     pub gravity: [f64; 3],
     /// One letter for each joint or coordinate: `s` scalar, `b` ball, `f` free.
     pub charts: &'static str,
     pub item: &'static str,
-    pub masses: &'static [Mass],
+    pub masses: &'static [BodyOrParticle],
     pub elements: &'static [(Law, &'static str)],
 }
 
@@ -67,13 +67,13 @@ struct State {
     tau: Vec<f64>,
 }
 
-struct Case<'a> {
-    row: &'a Row,
-    output: &'a Output,
+struct CompiledTestMechanism<'a> {
+    row: &'a CombinedMechanism,
+    output: &'a DerivationOutput,
     name: String,
 }
 
-fn check_combined_mechanism(row: &Row, more: &str) {
+fn check_combined_mechanism(row: &CombinedMechanism, more: &str) {
     let mut item = row.item.trim_end().trim_end_matches('}').to_string();
     for (name, ..) in row.masses {
         let _ = writeln!(item, "#[output(r({name} / ground))] o_{name}: Vector,");
@@ -90,12 +90,13 @@ fn check_combined_mechanism(row: &Row, more: &str) {
     let arguments = format!("gravity = {:?}{more}", row.gravity);
     let (mut cx, graph) = (Diagnostics::new(), Graph::new());
     let parse_tokens = |text: &str| text.parse().expect("Rust");
-    let source = read_source(parse_tokens(&arguments), parse_tokens(&item), Path::new(""), &mut cx);
+    let source =
+        parse_source_and_import(parse_tokens(&arguments), parse_tokens(&item), Path::new(""), &mut cx);
     let compiled = source.as_ref().and_then(|source| compile(source, &graph, &mut cx));
     let Some((model, output)) = compiled else {
-        panic!("{}: {}", row.name, cx.messages().join("\n"));
+        panic!("{}: {}", row.name, cx.full_message_texts().join("\n"));
     };
-    let case = Case { row, output: &output, name: format!("{}{more}", row.name) };
+    let case = CompiledTestMechanism { row, output: &output, name: format!("{}{more}", row.name) };
     let mut random = Random::new(7);
     for _ in 0..2 {
         let mut list =
@@ -126,7 +127,7 @@ fn check_combined_mechanism(row: &Row, more: &str) {
     }
 }
 
-fn is_particle(row: &Row, name: &str) -> bool {
+fn is_particle(row: &CombinedMechanism, name: &str) -> bool {
     row.item.contains(&format!("{name}: Particle"))
 }
 
@@ -168,9 +169,9 @@ fn second_derivative(f: impl Fn(f64) -> Vec<f64>) -> Vec<f64> {
     (0..a.len()).map(|i| (weighted_sum_of_outer_samples(i) - 490.0 * m[i]) / (180.0 * H * H)).collect()
 }
 
-impl Case<'_> {
+impl CompiledTestMechanism<'_> {
     /// Returns the state after `q ⊕ (v h + a h² / 2)`, with consistent velocities.
-    fn displaced_state(&self, s: &State, h: f64) -> State {
+    fn state_after_time(&self, s: &State, h: f64) -> State {
         let mut out = s.clone();
         let (mut q0, mut v0) = (0, 0);
         let taylor_displacement_of_coordinate = |k: usize| s.v[k] * h + s.a[k] * h * h / 2.0;
@@ -218,12 +219,12 @@ impl Case<'_> {
 
     /// Returns the state after a step of the configuration along one velocity. Time, velocities and
     /// accelerations are unchanged.
-    fn state_after_step(&self, s: &State, k: usize, h: f64) -> State {
+    fn state_displaced_along_velocity(&self, s: &State, k: usize, h: f64) -> State {
         let mut unit = s.clone();
         unit.v.fill(0.0);
         unit.a.fill(0.0);
         unit.v[k] = 1.0;
-        let moved = self.displaced_state(&unit, h);
+        let moved = self.state_after_time(&unit, h);
         State { q: moved.q, ..s.clone() }
     }
 
@@ -235,7 +236,7 @@ impl Case<'_> {
     fn run_function(&self, name: &str, s: &State) -> Vec<f64> {
         let f = self.output.functions.iter().find(|f| f.name == name);
         let f = f.unwrap_or_else(|| panic!("{}: no {name}", self.name));
-        let symbol_value = |symbol| match Quantity::from_symbol(symbol) {
+        let state_value_of_symbol = |symbol| match Quantity::from_symbol(symbol) {
             Quantity::Configuration(k) => s.q[k],
             Quantity::Velocity(k) => s.v[k],
             Quantity::Acceleration(k) => s.a[k],
@@ -243,11 +244,11 @@ impl Case<'_> {
             Quantity::Time => s.t,
             other => panic!("{}: {name} takes {other:?}", self.name),
         };
-        let plain = f.program.interpret_program(&symbol_value);
+        let plain = f.program.interpret_program(&state_value_of_symbol);
         if let Some(lanes) = f.program.simd.as_deref() {
             self.assert_close_entries(
                 &format!("lanes of {name}"),
-                &lanes.interpret_program(&symbol_value),
+                &lanes.interpret_program(&state_value_of_symbol),
                 &plain,
                 1.0,
             );
@@ -277,17 +278,17 @@ impl Case<'_> {
                 continue;
             }
             let axes = ["x", "y", "z"].map(|axis| self.run_function(&format!("{axis}_{name}"), s));
-            let position_in_frame = |p: [f64; 3]| {
+            let ground_position_of_body_point = |p: [f64; 3]| {
                 let coordinate_in_frame =
                     |i: usize| o[i] + (0..3).map(|k| (axes[k][i] - o[i]) * p[k]).sum::<f64>();
                 [coordinate_in_frame(0), coordinate_in_frame(1), coordinate_in_frame(2)]
             };
-            all.extend(position_in_frame(*com));
+            all.extend(ground_position_of_body_point(*com));
             for k in (0..3).filter(|_| *moments != [0.0; 3]) {
                 for side in [-1.0, 1.0] {
                     let mut p = *com;
                     p[k] += side;
-                    all.extend(position_in_frame(p));
+                    all.extend(ground_position_of_body_point(p));
                 }
             }
         }
@@ -316,21 +317,24 @@ impl Case<'_> {
         let lengths_of_elements = |s: &State| -> Vec<f64> {
             (0..self.row.elements.len()).map(|k| self.run_function(&format!("s{k}"), s)[0]).collect()
         };
-        let accelerations = second_derivative(|h| self.particle_positions(&self.displaced_state(s, h)));
+        let accelerations = second_derivative(|h| self.particle_positions(&self.state_after_time(s, h)));
         let (now, rate, bend) = (
             lengths_of_elements(s),
-            sixth_order_difference(|h| lengths_of_elements(&self.displaced_state(s, h))),
-            second_derivative(|h| lengths_of_elements(&self.displaced_state(s, h))),
+            sixth_order_difference(|h| lengths_of_elements(&self.state_after_time(s, h))),
+            second_derivative(|h| lengths_of_elements(&self.state_after_time(s, h))),
         );
         let weights = self.masses_of_replacing_particles();
         let generalized_force = |k: usize| {
-            let partial =
-                sixth_order_difference(|h| self.particle_positions(&self.state_after_step(s, k, h)));
+            let partial = sixth_order_difference(|h| {
+                self.particle_positions(&self.state_displaced_along_velocity(s, k, h))
+            });
             let mut sum = 0.0;
             for (i, (a, p)) in accelerations.iter().zip(&partial).enumerate() {
                 sum += weights[i / 3] * (a - self.row.gravity[i % 3]) * p;
             }
-            let partial = sixth_order_difference(|h| lengths_of_elements(&self.state_after_step(s, k, h)));
+            let partial = sixth_order_difference(|h| {
+                lengths_of_elements(&self.state_displaced_along_velocity(s, k, h))
+            });
             for (e, (law, _)) in self.row.elements.iter().enumerate() {
                 sum += partial[e]
                     * match *law {
@@ -365,7 +369,7 @@ impl Case<'_> {
         let nc = jacobian.len() / nv;
         // Constraint rates are linear in the velocities.
         for k in 0..nv {
-            let constraint_rates_at_displacement = |h: f64| {
+            let constraint_rates_at_changed_velocity = |h: f64| {
                 let mut s = s.clone();
                 s.v[k] += h;
                 self.run_function("constraint_rates", &s)
@@ -373,22 +377,23 @@ impl Case<'_> {
             self.assert_close_entries(
                 "Jacobian",
                 &jacobian[k * nc..(k + 1) * nc],
-                &sixth_order_difference(constraint_rates_at_displacement),
+                &sixth_order_difference(constraint_rates_at_changed_velocity),
                 1.0,
             );
         }
         let rates = self.run_function("constraint_rates", s);
         let residuals = sixth_order_difference(|h| {
-            self.run_function("constraint_residuals", &self.displaced_state(s, h))
+            self.run_function("constraint_residuals", &self.state_after_time(s, h))
         });
         self.assert_close_entries("rates", &rates[..residuals.len()], &residuals, 1.0);
         let free = State { a: vec![0.0; nv], ..s.clone() };
-        let bend =
-            second_derivative(|h| self.run_function("constraint_residuals", &self.displaced_state(&free, h)));
+        let bend = second_derivative(|h| {
+            self.run_function("constraint_residuals", &self.state_after_time(&free, h))
+        });
         self.assert_close_entries("bias", &self.run_function("constraint_bias", s)[..bend.len()], &bend, 1.0);
         if !self.row.charts.contains('b') && !self.row.charts.contains('f') {
             let change = sixth_order_difference(|h| {
-                self.run_function("constraint_rates", &self.displaced_state(&free, h))
+                self.run_function("constraint_rates", &self.state_after_time(&free, h))
             });
             self.assert_close_entries("bias of all", &self.run_function("constraint_bias", s), &change, 1.0);
         }
@@ -429,7 +434,7 @@ impl Case<'_> {
         let mut expected = Vec::new();
         for k in 0..nv {
             expected.extend(sixth_order_difference(|h| {
-                self.run_function("inverse_dynamics", &self.state_after_step(s, k, h))
+                self.run_function("inverse_dynamics", &self.state_displaced_along_velocity(s, k, h))
             }));
         }
         for k in 0..nv {

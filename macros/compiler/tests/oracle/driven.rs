@@ -2,14 +2,14 @@
 //! points, or their rates, are functions of time. Accelerations follow from the prescribed motions alone, and
 //! the multipliers are the residuals of Kane's equations.
 
-use crate::kane::{self, Measure, State};
+use crate::kane::{self, PrescribedQuantity, State};
 use crate::random::Random;
-use crate::spec::{End, GeneratorSettings, Spec, random_mechanism_spec};
+use crate::spec::{AttachmentPoint, GeneratorSettings, MechanismSpec, random_mechanism_spec};
 use crate::words;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::mechanism::Quantity;
-use linkwork_compiler::{compile, read_source};
+use linkwork_compiler::{compile, parse_source_and_import};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -21,8 +21,8 @@ const TIME: f64 = 0.4;
 
 /// Prescribed motion: the measure follows `c₀ + c₁ t + c₂ t²`, or its rate follows the rate of this
 /// polynomial.
-struct Drive {
-    measure: Measure,
+struct PrescribedMotion {
+    measure: PrescribedQuantity,
     path: [f64; 3],
     by_rate: bool,
 }
@@ -37,7 +37,7 @@ pub fn check_driven_mechanism(seed: u64) -> bool {
     }
     let (nq, nv) = kane::coordinate_and_velocity_counts(&spec);
     let mut random = Random::new(seed ^ 0xd41e);
-    let drives: Vec<Drive> = random_prescribed_motions(&spec, nv, &mut random);
+    let drives: Vec<PrescribedMotion> = random_prescribed_motions(&spec, nv, &mut random);
     let mut list =
         |n: usize, bound: f64| -> Vec<f64> { (0..n).map(|_| random.uniform_number(bound)).collect() };
     let (mut q, v, tau) = (list(nq, 1.2), list(nv, 1.0), list(nv, 3.0));
@@ -46,21 +46,23 @@ pub fn check_driven_mechanism(seed: u64) -> bool {
         return false;
     }
     let zero = vec![0.0; nv];
-    let partial_velocities = |k: usize| -> Vec<f64> {
+    let partial_rates_of_quantities = |k: usize| -> Vec<f64> {
         let unit: Vec<f64> = (0..nv).map(|i| if i == k { 1.0 } else { 0.0 }).collect();
         let state = State::new(&q, &unit, &zero);
         drives
             .iter()
-            .map(|drive| kane::value_of_measure(&spec, &state, &drive.measure).first_time_derivative().re)
+            .map(|drive| {
+                kane::series_of_prescribed_quantity(&spec, &state, &drive.measure).first_time_derivative().re
+            })
             .collect()
     };
     // Stored by rows.
-    let columns: Vec<Vec<f64>> = (0..nv).map(partial_velocities).collect();
+    let columns: Vec<Vec<f64>> = (0..nv).map(partial_rates_of_quantities).collect();
     let jacobian: Vec<Vec<f64>> = (0..nv).map(|i| columns.iter().map(|column| column[i]).collect()).collect();
     let state = State::new(&q, &v, &zero);
     let missing = drives.iter().map(|drive| {
         2.0 * drive.path[2]
-            - kane::value_of_measure(&spec, &state, &drive.measure).second_time_derivative().re
+            - kane::series_of_prescribed_quantity(&spec, &state, &drive.measure).second_time_derivative().re
     });
     let Some(a) = solve_linear_system(jacobian, missing.collect()) else { return false };
     let forces = kane::inverse_dynamics(&spec, &State::new(&q, &v, &a));
@@ -72,7 +74,7 @@ pub fn check_driven_mechanism(seed: u64) -> bool {
     true
 }
 
-fn normalise_quaternions(spec: &Spec, q: &mut [f64]) {
+fn normalise_quaternions(spec: &MechanismSpec, q: &mut [f64]) {
     let mut first = 0;
     for body in &spec.bodies {
         let (own, _) = body.kind.coordinate_and_velocity_counts();
@@ -87,21 +89,21 @@ fn normalise_quaternions(spec: &Spec, q: &mut [f64]) {
 
 /// Returns a prescribed motion for every velocity: of coordinates of a joint, some in combination with
 /// others, or of points of its body if the joint has no coordinates.
-fn random_prescribed_motions(spec: &Spec, nv: usize, random: &mut Random) -> Vec<Drive> {
+fn random_prescribed_motions(spec: &MechanismSpec, nv: usize, random: &mut Random) -> Vec<PrescribedMotion> {
     let mut drives = Vec::new();
     let mut before: Vec<(usize, usize)> = Vec::new();
     for (k, body) in spec.bodies.iter().enumerate() {
         let (_, own) = body.kind.coordinate_and_velocity_counts();
         for i in 0..own {
-            let plain = !body.kind.coordinate_names().is_empty();
+            let plain = !body.kind.suffixes_of_actuatable_coordinates().is_empty();
             let is_way = !plain || random.index_below(4) == 0;
             let measure = if is_way {
                 let mut at = [0.0; 3];
                 at.iter_mut().for_each(|x| *x = 1.2 * random.uniform_number(1.0));
                 let carrier = body.parent.filter(|_| random.index_below(2) == 0);
-                Measure::Way(
-                    End { body: Some(k), at },
-                    End { body: carrier, at: [0.3; 3] },
+                PrescribedQuantity::Way(
+                    AttachmentPoint { body: Some(k), at },
+                    AttachmentPoint { body: carrier, at: [0.3; 3] },
                     random.index_below(3),
                 )
             } else {
@@ -111,11 +113,11 @@ fn random_prescribed_motions(spec: &Spec, nv: usize, random: &mut Random) -> Vec
                     list.push((random.uniform_number(0.8), body, coordinate));
                 }
                 before.push((k, i));
-                Measure::Coordinates(list)
+                PrescribedQuantity::Coordinates(list)
             };
             let path = [0.0; 3].map(|_| random.uniform_number(1.0));
             let by_rate = !is_way && random.index_below(3) == 0;
-            drives.push(Drive { measure, path, by_rate });
+            drives.push(PrescribedMotion { measure, path, by_rate });
         }
     }
     debug_assert_eq!(drives.len(), nv);
@@ -155,8 +157,8 @@ fn solve_linear_system(mut rows: Vec<Vec<f64>>, mut right: Vec<f64>) -> Option<V
 }
 
 fn compare_with_oracle(
-    spec: &Spec,
-    drives: &[Drive],
+    spec: &MechanismSpec,
+    drives: &[PrescribedMotion],
     more: &str,
     (q, v, tau): (&[f64], &[f64], &[f64]),
     (a, lambda): (&[f64], &[f64]),
@@ -166,27 +168,27 @@ fn compare_with_oracle(
     let mut item = item.trim_end().trim_end_matches('}').to_string();
     for (k, drive) in drives.iter().enumerate() {
         let coordinate_name = |(_, body, k): &(f64, usize, usize)| {
-            format!("joint{body}{}", spec.bodies[*body].kind.coordinate_names()[*k])
+            format!("joint{body}{}", spec.bodies[*body].kind.suffixes_of_actuatable_coordinates()[*k])
         };
         let [start, speed, growth] = drive.path;
         let (kind, left, right) = match &drive.measure {
-            Measure::Coordinates(list) if drive.by_rate => {
+            PrescribedQuantity::Coordinates(list) if drive.by_rate => {
                 let terms =
                     list.iter().map(|term| format!("({:?}) * rate({})", term.0, coordinate_name(term)));
                 ("Nonholonomic", terms.collect::<Vec<_>>(), format!("{speed:?} + ({growth:?}) * 2 * t"))
             }
             measure => {
                 let terms = match measure {
-                    Measure::Coordinates(list) => list
+                    PrescribedQuantity::Coordinates(list) => list
                         .iter()
                         .map(|term| format!("({:?}) * {}", term.0, coordinate_name(term)))
                         .collect(),
-                    Measure::Way(a, b, axis) => {
+                    PrescribedQuantity::Way(a, b, axis) => {
                         let axis = ["x", "y", "z"][*axis];
                         vec![format!(
                             "dot(r({} / {}), ground.{axis})",
-                            words::end_text(a),
-                            words::end_text(b)
+                            words::attachment_point_text(a),
+                            words::attachment_point_text(b)
                         )]
                     }
                 };
@@ -200,10 +202,11 @@ fn compare_with_oracle(
     let mut cx = Diagnostics::new();
     let graph = Graph::new();
     let parse_tokens = |text: &str| text.parse().expect("the generated source is Rust");
-    let source = read_source(parse_tokens(&arguments), parse_tokens(&item), Path::new(""), &mut cx);
+    let source =
+        parse_source_and_import(parse_tokens(&arguments), parse_tokens(&item), Path::new(""), &mut cx);
     let compiled = source.as_ref().and_then(|source| compile(source, &graph, &mut cx));
     let Some((model, output)) = compiled else {
-        let told = cx.messages();
+        let told = cx.full_message_texts();
         // Without sample configurations that satisfy the constraints, dependent speeds cannot be determined.
         assert!(
             more.contains("speeds") && told.iter().all(|told| told.contains("do not determine")),
@@ -213,7 +216,7 @@ fn compare_with_oracle(
         return;
     };
     assert_eq!((model.freedom.velocities, model.constraints.len()), (0, v.len()), "seed {seed}\n{item}");
-    let value_of_symbol = |symbol| match Quantity::from_symbol(symbol) {
+    let state_value_of_symbol = |symbol| match Quantity::from_symbol(symbol) {
         Quantity::Configuration(k) => q[k],
         Quantity::Velocity(k) => v[k],
         Quantity::Force(k) => tau[k],
@@ -222,13 +225,13 @@ fn compare_with_oracle(
         other => panic!("seed {seed}: {other:?}"),
     };
     let passive = output.functions.iter().find(|f| f.name == "__passive_forces");
-    let passive = passive.map_or(Vec::new(), |f| f.program.interpret_program(&value_of_symbol));
-    let value_with_passive_forces = |s| match Quantity::from_symbol(s) {
+    let passive = passive.map_or(Vec::new(), |f| f.program.interpret_program(&state_value_of_symbol));
+    let symbol_value_including_passive_forces = |s| match Quantity::from_symbol(s) {
         Quantity::PassiveForce(k) => passive[k],
-        _ => value_of_symbol(s),
+        _ => state_value_of_symbol(s),
     };
     let f = output.functions.iter().find(|f| f.name == "__constrained_dynamics").expect("it is constrained");
-    let found = f.program.interpret_program(&value_with_passive_forces);
+    let found = f.program.interpret_program(&symbol_value_including_passive_forces);
     assert_close_entries(&format!("seed {seed}{more}: accelerations\n{item}"), &found[..v.len()], a);
     assert_close_entries(
         &format!("seed {seed}{more}: multipliers\n{item}"),
@@ -238,7 +241,7 @@ fn compare_with_oracle(
 }
 
 /// Returns the value of a mass that is a parameter.
-fn mass_parameter_value(spec: &Spec, name: &str) -> f64 {
+fn mass_parameter_value(spec: &MechanismSpec, name: &str) -> f64 {
     let body = name.strip_prefix("mass").and_then(|k| k.parse::<usize>().ok());
     spec.bodies[body.expect("masses alone are parameters")].mass
 }

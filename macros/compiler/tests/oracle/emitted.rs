@@ -7,21 +7,21 @@ use syn::{Block, Expr, ExprCall, ExprField, Lit, Member, Pat, Stmt, UnOp};
 
 /// Reason why a generated function body cannot be interpreted.
 #[derive(Debug)]
-pub enum Stop {
+pub enum InterpretationError {
     /// The function body calls a function that the interpreter does not support.
     Foreign,
     /// The body is invalid Rust, or it does not end with a value.
     Wrong(String),
 }
 
-type Result<T> = std::result::Result<T, Stop>;
+type Result<T> = std::result::Result<T, InterpretationError>;
 
 fn foreign_code_error<T>() -> Result<T> {
-    Err(Stop::Foreign)
+    Err(InterpretationError::Foreign)
 }
 
 fn wrong_code_error<T>(what: impl Into<String>) -> Result<T> {
-    Err(Stop::Wrong(what.into()))
+    Err(InterpretationError::Wrong(what.into()))
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -91,13 +91,13 @@ fn apply_lane_by_lane(values: &[Value], f: &dyn Fn(&[f64]) -> f64) -> Result<Val
 }
 
 /// State of the interpreter: variables of nested blocks, parameters of the mechanism, and number of states.
-pub struct Machine {
+pub struct InterpreterState {
     pub scopes: Vec<BTreeMap<String, Option<Value>>>,
     pub parameters: BTreeMap<String, Value>,
     pub states: usize,
 }
 
-impl Machine {
+impl InterpreterState {
     /// Executes a body and returns its value. Its variables remain defined.
     pub fn execute_function_body(&mut self, body: &Block) -> Result<Value> {
         let mut last = Value::List(Vec::new());
@@ -196,9 +196,10 @@ impl Machine {
             }
             Expr::Tuple(tuple) => self.evaluate_list(tuple.elems.iter()),
             Expr::Array(array) => self.evaluate_list(array.elems.iter()),
-            Expr::Repeat(repeat) => {
-                Ok(Value::List(vec![self.evaluate_expression(&repeat.expr)?; index(&repeat.len)?]))
-            }
+            Expr::Repeat(repeat) => Ok(Value::List(vec![
+                self.evaluate_expression(&repeat.expr)?;
+                integer_literal_value(&repeat.len)?
+            ])),
             Expr::Struct(fields) => self.evaluate_list(fields.fields.iter().map(|field| &field.expr)),
             Expr::Block(block) => {
                 self.scopes.push(BTreeMap::new());
@@ -208,7 +209,8 @@ impl Machine {
             }
             Expr::Field(field) => self.parameter_field(field),
             Expr::Index(inner) => {
-                let (list, at) = (self.evaluate_expression(&inner.expr)?, index(&inner.index)?);
+                let (list, at) =
+                    (self.evaluate_expression(&inner.expr)?, integer_literal_value(&inner.index)?);
                 list.elements_of_list()?
                     .get(at)
                     .cloned()
@@ -284,7 +286,7 @@ impl Machine {
             match inner {
                 Expr::Path(name) => break quote::quote!(#name).to_string(),
                 Expr::Index(one) => {
-                    at.insert(0, index(&one.index)?);
+                    at.insert(0, integer_literal_value(&one.index)?);
                     inner = &one.expr;
                 }
                 Expr::Field(field) => inner = &field.base,
@@ -321,7 +323,7 @@ impl Machine {
         }
         let lanes = match &last.arguments {
             syn::PathArguments::AngleBracketed(types) => match types.args.last() {
-                Some(syn::GenericArgument::Const(expr)) => Some(index(expr)?),
+                Some(syn::GenericArgument::Const(expr)) => Some(integer_literal_value(expr)?),
                 Some(syn::GenericArgument::Type(syn::Type::Path(name))) if name.path.is_ident("LANES") => {
                     Some(self.states)
                 }
@@ -395,7 +397,7 @@ impl Machine {
 /// Returns the result of an operation; `None` for an unknown operation.
 fn apply_operation(name: &str, lanes: Option<usize>, values: &[Value]) -> Option<Result<Value>> {
     // In a product of a number and lanes, the number is not broadcast in the code.
-    let apply_scaled_function = |rest: &str| -> Option<Result<Value>> {
+    let apply_with_broadcast_number = |rest: &str| -> Option<Result<Value>> {
         let (Value::Number(x), Value::Lanes(own)) = (values.first()?, values.get(1)?) else {
             return Some(wrong_code_error(format!("{name} of {values:?}")));
         };
@@ -410,10 +412,10 @@ fn apply_operation(name: &str, lanes: Option<usize>, values: &[Value]) -> Option
         ("mul_add", [_, _, _]) => apply_lane_by_lane(values, &|x| x[0] * x[1] + x[2]),
         ("mul_sub", [_, _, _]) => apply_lane_by_lane(values, &|x| x[0] * x[1] - x[2]),
         ("neg_mul_add", [_, _, _]) => apply_lane_by_lane(values, &|x| x[2] - x[0] * x[1]),
-        ("scale", [_, _]) => apply_scaled_function("")?,
-        ("scale_add", [_, _, _]) => apply_scaled_function("mul_add")?,
-        ("scale_sub", [_, _, _]) => apply_scaled_function("mul_sub")?,
-        ("neg_scale_add", [_, _, _]) => apply_scaled_function("neg_mul_add")?,
+        ("scale", [_, _]) => apply_with_broadcast_number("")?,
+        ("scale_add", [_, _, _]) => apply_with_broadcast_number("mul_add")?,
+        ("scale_sub", [_, _, _]) => apply_with_broadcast_number("mul_sub")?,
+        ("neg_scale_add", [_, _, _]) => apply_with_broadcast_number("neg_mul_add")?,
         ("splat", [Value::Number(x)]) => Ok(Value::Lanes(vec![*x; lanes?])),
         ("each", [all]) => Ok(all.clone()),
         ("lanes", [Value::List(list)]) => {
@@ -432,14 +434,14 @@ fn apply_operation(name: &str, lanes: Option<usize>, values: &[Value]) -> Option
         ("sin_cos_all", [Value::List(angles)]) => {
             let all: Result<Vec<Value>> = angles.iter().map(sine_and_cosine).collect();
             all.and_then(|all| {
-                let list_of_pair_elements = |k: usize| -> Result<Value> {
+                let kth_elements_of_pairs = |k: usize| -> Result<Value> {
                     Ok(Value::List(
                         all.iter()
                             .map(|pair| Ok(pair.elements_of_list()?[k].clone()))
                             .collect::<Result<_>>()?,
                     ))
                 };
-                Ok(Value::List(vec![list_of_pair_elements(0)?, list_of_pair_elements(1)?]))
+                Ok(Value::List(vec![kth_elements_of_pairs(0)?, kth_elements_of_pairs(1)?]))
             })
         }
         ("atan2", [_, _]) => apply_lane_by_lane(values, &|x| x[0].atan2(x[1])),
@@ -461,7 +463,7 @@ fn sine_and_cosine(x: &Value) -> Result<Value> {
 }
 
 /// Returns the value of an integer literal in a function body.
-fn index(expr: &Expr) -> Result<usize> {
+fn integer_literal_value(expr: &Expr) -> Result<usize> {
     match expr {
         Expr::Lit(syn::ExprLit { lit: Lit::Int(k), .. }) => {
             k.base10_parse().or_else(|_| foreign_code_error())
@@ -473,7 +475,7 @@ fn index(expr: &Expr) -> Result<usize> {
 /// Returns the integers among the generic arguments of a call.
 fn integer_generic_arguments(types: &syn::AngleBracketedGenericArguments) -> Vec<usize> {
     let integer_of_generic_argument = |argument: &syn::GenericArgument| match argument {
-        syn::GenericArgument::Const(expr) => index(expr).ok(),
+        syn::GenericArgument::Const(expr) => integer_literal_value(expr).ok(),
         _ => None,
     };
     types.args.iter().filter_map(integer_of_generic_argument).collect()

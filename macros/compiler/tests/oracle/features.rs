@@ -12,7 +12,7 @@ mod values;
 use crate::test_seeds;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
-use linkwork_compiler::{check_mechanism, compile, expand, read_source};
+use linkwork_compiler::{check_mechanism, compile, expand, parse_source_and_import};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
@@ -110,7 +110,8 @@ fn overlong_mechanisms_are_rejected_at_any_capacity() {
     for seed in all.clone() {
         let (arguments, item) = source::random_source(seed);
         let mut cx = Diagnostics::new();
-        let Some(source) = read_source(parse_tokens(&arguments), parse_tokens(&item), Path::new(""), &mut cx)
+        let Some(source) =
+            parse_source_and_import(parse_tokens(&arguments), parse_tokens(&item), Path::new(""), &mut cx)
         else {
             continue;
         };
@@ -120,8 +121,12 @@ fn overlong_mechanisms_are_rejected_at_any_capacity() {
             assert!(graph.len() <= room);
             if graph.is_full() {
                 long += 1;
-                assert!(compiled.is_none() && cx.len() == 1, "seed {seed}: {:?}", cx.messages());
-                assert!(cx.messages()[0].contains("would be too long"), "seed {seed}: {:?}", cx.messages());
+                assert!(compiled.is_none() && cx.len() == 1, "seed {seed}: {:?}", cx.full_message_texts());
+                assert!(
+                    cx.full_message_texts()[0].contains("would be too long"),
+                    "seed {seed}: {:?}",
+                    cx.full_message_texts()
+                );
             }
         }
     }

@@ -6,45 +6,49 @@ use crate::random::Random;
 use crate::robot::Robot;
 use crate::sdf;
 use crate::test_seeds;
-use linkwork_compiler::derive::{Function, Output};
+use linkwork_compiler::derive::{DerivationOutput, Function};
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::{Graph, Symbol};
 use linkwork_compiler::mechanism::Quantity;
 use linkwork_compiler::resolve::build_model;
 use linkwork_compiler::syntax::{self, Base, FileFormat, FileInputSource, FileOptions, Name};
-use linkwork_compiler::{derive, import, read_source};
+use linkwork_compiler::{derive, import, parse_source_and_import};
 use std::path::Path;
 
 const GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
 
 /// Imports a robot file. Returns the names of its coordinates, and its generated functions.
-fn functions_of_file(robot: &Robot, format: FileFormat, text: &str) -> (Vec<String>, Output) {
+fn coordinate_names_and_functions(
+    robot: &Robot,
+    format: FileFormat,
+    text: &str,
+) -> (Vec<String>, DerivationOutput) {
     let mut cx = Diagnostics::new();
     let (arguments, item) = ("".parse().unwrap(), "struct Robot;".parse().unwrap());
-    let mut source = read_source(arguments, item, Path::new(""), &mut cx).expect("a struct");
+    let mut source = parse_source_and_import(arguments, item, Path::new(""), &mut cx).expect("a struct");
     let place = source.mechanism.description.name.place.clone();
-    let name_at_place = |text: &str| Name { text: text.to_string(), place: place.clone() };
+    let name_from_text = |text: &str| Name { text: text.to_string(), place: place.clone() };
     let options = FileOptions {
         base: if robot.free { Base::Free } else { Base::Fixed },
         inputs: FileInputSource::Joints,
-        lock: robot.locked_joints().map(name_at_place).collect(),
-        ..FileOptions::with_defaults(format, name_at_place("file"))
+        lock: robot.locked_joint_names().map(name_from_text).collect(),
+        ..FileOptions::default_options_of_file(format, name_from_text("file"))
     };
     let imported = import::import_file(text, Path::new(""), &options, &mut cx);
-    let imported = imported.unwrap_or_else(|| panic!("{:?}\n{text}", cx.messages()));
+    let imported = imported.unwrap_or_else(|| panic!("{:?}\n{text}", cx.full_message_texts()));
     let description = &mut source.mechanism.description;
     (description.bodies, description.joints) = (imported.bodies, imported.joints);
     description.gravity = Some(syntax::Expr::vector_at(GRAVITY, &place));
     let graph = Graph::new();
     let model = build_model(description, &graph, &mut cx);
     let output = model.as_ref().and_then(|model| derive(model, &mut cx));
-    let output = output.unwrap_or_else(|| panic!("{:?}\n{text}", cx.messages()));
+    let output = output.unwrap_or_else(|| panic!("{:?}\n{text}", cx.full_message_texts()));
     (model.map(|model| model.configuration).unwrap_or_default(), output)
 }
 
 /// Returns the values of a function from the scalar program and from the program with lanes.
 fn values_of_function(f: &Function, [q, v, a]: &[Vec<f64>; 3], tau: &[f64]) -> Vec<Vec<f64>> {
-    let value_of_symbol = |symbol: Symbol| match Quantity::from_symbol(symbol) {
+    let state_value_of_symbol = |symbol: Symbol| match Quantity::from_symbol(symbol) {
         Quantity::Configuration(k) => q[k],
         Quantity::Velocity(k) => v[k],
         Quantity::Acceleration(k) => a[k],
@@ -54,7 +58,7 @@ fn values_of_function(f: &Function, [q, v, a]: &[Vec<f64>; 3], tau: &[f64]) -> V
     [Some(&f.program), f.program.simd.as_deref()]
         .into_iter()
         .flatten()
-        .map(|p| p.interpret_program(&value_of_symbol))
+        .map(|p| p.interpret_program(&state_value_of_symbol))
         .collect()
 }
 
@@ -79,13 +83,17 @@ fn reference_values(robot: &Robot, [q, v, a]: &[Vec<f64>; 3]) -> ReferenceMotion
         let unit: Vec<f64> = (0..v.len()).map(|j| f64::from(u8::from(j == k))).collect();
         robot.moving_bodies(&State::new(q, &unit, &vec![0.0; v.len()]))
     };
-    let inertial_force = |k: usize| {
-        pieces.iter().zip(partial_velocities(k)).map(|(p, moved)| p.inertial_force(&moved, GRAVITY).re).sum()
+    let generalized_inertial_force = |k: usize| {
+        pieces
+            .iter()
+            .zip(partial_velocities(k))
+            .map(|(p, moved)| p.generalized_inertial_force(&moved, GRAVITY).re)
+            .sum()
     };
     let mass: f64 = pieces.iter().map(|p| p.mass).sum();
     let moment = std::array::from_fn(|i| pieces.iter().map(|p| p.mass * p.p[i].0[0].re).sum::<f64>());
     ReferenceMotionValues {
-        forces: (0..v.len()).map(inertial_force).collect(),
+        forces: (0..v.len()).map(generalized_inertial_force).collect(),
         kinetic: pieces.iter().map(|p| p.kinetic_energy().re).sum(),
         potential: -(0..3).map(|i| GRAVITY[i] * moment[i]).sum::<f64>(),
         center: moment.map(|m| m / mass),
@@ -118,7 +126,7 @@ fn random_sdf_files_of_all_versions_have_equal_dynamics() {
 
 /// Compares the functions of a robot's file with Kane's equations at two states.
 fn check_file_against_kane(robot: &Robot, format: FileFormat, text: &str, seed: u64, random: &mut Random) {
-    let (names, output) = functions_of_file(robot, format, text);
+    let (names, output) = coordinate_names_and_functions(robot, format, text);
     assert_eq!(names, robot.coordinate_names(), "{text}");
     let find_function = |name: &str| output.functions.iter().find(|f| f.name == name).expect("a function");
     for _ in 0..2 {

@@ -10,7 +10,7 @@ use std::ops::{Add, Mul, Neg, Sub};
 pub type C = Complex<f64>;
 
 /// Returns a real number as a complex number.
-pub fn real_number(x: f64) -> C {
+pub fn complex_from_real(x: f64) -> C {
     C::new(x, 0.0)
 }
 
@@ -21,7 +21,7 @@ pub struct Jet(pub [C; 3]);
 impl Jet {
     /// Returns the Taylor series of a constant.
     pub fn constant_series(x: f64) -> Jet {
-        Jet([real_number(x), real_number(0.0), real_number(0.0)])
+        Jet([complex_from_real(x), complex_from_real(0.0), complex_from_real(0.0)])
     }
 
     /// Returns the square root of a positive series.
@@ -106,7 +106,7 @@ pub fn sum_of_vectors(a: Vector, b: Vector) -> Vector {
 }
 
 /// Returns the difference `a − b` of two vectors.
-pub fn difference(a: Vector, b: Vector) -> Vector {
+pub fn difference_of_vectors(a: Vector, b: Vector) -> Vector {
     from_fn(|i| a[i] - b[i])
 }
 
@@ -137,7 +137,7 @@ pub fn transposed_matrix(a: &Matrix) -> Matrix {
 }
 
 /// Returns the identity matrix with Taylor series as entries.
-pub fn identity() -> Matrix {
+pub fn identity_matrix() -> Matrix {
     from_fn(|i| from_fn(|j| Jet::constant_series(if i == j { 1.0 } else { 0.0 })))
 }
 

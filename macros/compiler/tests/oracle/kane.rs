@@ -5,14 +5,16 @@
 //! 5). The oracle uses no code of the compiler.
 
 use crate::jet::{
-    C, Jet, Matrix, Vector, constant_vector, cross, difference, dot, identity, matrix_product, real_number,
-    rotated_vector, rotation_about_axis, scaled_vector, sum_of_vectors,
+    C, Jet, Matrix, Vector, complex_from_real, constant_vector, cross, difference_of_vectors, dot,
+    identity_matrix, matrix_product, rotated_vector, rotation_about_axis, scaled_vector, sum_of_vectors,
 };
 use crate::motion::{
-    Piece, Pose, angular_motion, complex_dot, compose_poses, inverse, position_moving_with_velocity,
-    rotating_orientation, rotation_of_quaternion, velocity_of_position,
+    MovingBody, Pose, angular_motion, complex_dot, compose_poses, inverse_pose,
+    position_moving_with_velocity, rotating_orientation, rotation_of_quaternion, velocity_of_position,
 };
-use crate::spec::{Body, Element, End, Kind, Law, Path, Place, Spec};
+use crate::spec::{
+    AttachmentPoint, Body, ForceElement, ForceLaw, ForcePath, MechanismSpec, Placement, TestJointKind,
+};
 use std::array::from_fn;
 
 /// State with accelerations. Complex, so that an imaginary step gives derivatives.
@@ -26,7 +28,7 @@ pub struct State {
 impl State {
     /// Creates a state from real configuration, velocities and accelerations.
     pub fn new(q: &[f64], v: &[f64], a: &[f64]) -> State {
-        let complex_vector = |x: &[f64]| x.iter().map(|x| real_number(*x)).collect();
+        let complex_vector = |x: &[f64]| x.iter().map(|x| complex_from_real(*x)).collect();
         State { q: complex_vector(q), v: complex_vector(v), a: complex_vector(a) }
     }
 }
@@ -34,42 +36,48 @@ impl State {
 /// Poses, masses and joint coordinates of all bodies at one state, as Taylor series in time.
 struct World {
     poses: Vec<Pose>,
-    pieces: Vec<Piece>,
+    pieces: Vec<MovingBody>,
     /// For each body, the joint coordinates that force elements can act on.
     coordinates: Vec<Vec<Jet>>,
 }
 
 fn rotation_from_turns(list: &[(usize, f64)]) -> Matrix {
-    list.iter().fold(identity(), |r, (axis, angle)| {
+    list.iter().fold(identity_matrix(), |r, (axis, angle)| {
         let mut unit = [0.0; 3];
         unit[*axis] = 1.0;
         matrix_product(&r, &rotation_about_axis(unit, Jet::constant_series(*angle)))
     })
 }
 
-fn pose_of_place(place: &Place) -> Pose {
+fn pose_of_place(place: &Placement) -> Pose {
     Pose { r: rotation_from_turns(&place.turns), p: constant_vector(place.at) }
 }
 
 /// Returns the pose of a joint, and its coordinates that elements can act on.
-fn joint_pose(body: &Body, q: &[C], v: &[C], a: &[C]) -> (Pose, Vec<Jet>) {
+fn joint_pose_and_coordinates(body: &Body, q: &[C], v: &[C], a: &[C]) -> (Pose, Vec<Jet>) {
     let [one, two] = body.axes;
     let rotation_pose = |r: Matrix| Pose { r, p: constant_vector([0.0; 3]) };
-    let translation_pose = |p: Vector| Pose { r: identity(), p };
-    let three_components = |list: &[C], k: usize| [list[k], list[k + 1], list[k + 2]];
-    if body.kind == Kind::Ball {
+    let translation_pose = |p: Vector| Pose { r: identity_matrix(), p };
+    let three_entries_from = |list: &[C], k: usize| [list[k], list[k + 1], list[k + 2]];
+    if body.kind == TestJointKind::Ball {
         return (
-            rotation_pose(rotating_orientation(q, three_components(v, 0), three_components(a, 0))),
+            rotation_pose(rotating_orientation(q, three_entries_from(v, 0), three_entries_from(a, 0))),
             Vec::new(),
         );
     }
-    if body.kind == Kind::Free {
-        let (w, rate) = (three_components(v, 3), three_components(a, 3));
+    if body.kind == TestJointKind::Free {
+        let (w, rate) = (three_entries_from(v, 3), three_entries_from(a, 3));
         let r = rotating_orientation(&q[3..], w, rate);
         return (
             Pose {
                 r,
-                p: position_moving_with_velocity(q, &r, three_components(v, 0), w, three_components(a, 0)),
+                p: position_moving_with_velocity(
+                    q,
+                    &r,
+                    three_entries_from(v, 0),
+                    w,
+                    three_entries_from(a, 0),
+                ),
             },
             Vec::new(),
         );
@@ -77,29 +85,29 @@ fn joint_pose(body: &Body, q: &[C], v: &[C], a: &[C]) -> (Pose, Vec<Jet>) {
     let s: Vec<Jet> = (0..q.len()).map(|k| Jet([q[k], v[k], a[k] * 0.5])).collect();
     let (x, y, z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
     let pose = match body.kind {
-        Kind::Pin => rotation_pose(rotation_about_axis(one, s[0])),
-        Kind::Sleeve => translation_pose(scaled_vector(s[0], one)),
-        Kind::Screw => Pose {
+        TestJointKind::Pin => rotation_pose(rotation_about_axis(one, s[0])),
+        TestJointKind::Sleeve => translation_pose(scaled_vector(s[0], one)),
+        TestJointKind::Screw => Pose {
             r: rotation_about_axis(one, s[0]),
             p: scaled_vector(s[0] * Jet::constant_series(body.pitch), one),
         },
-        Kind::Collar => Pose { r: rotation_about_axis(one, s[1]), p: scaled_vector(s[0], one) },
-        Kind::Slot => Pose { r: rotation_about_axis(two, s[1]), p: scaled_vector(s[0], one) },
-        Kind::Universal => {
+        TestJointKind::Collar => Pose { r: rotation_about_axis(one, s[1]), p: scaled_vector(s[0], one) },
+        TestJointKind::Slot => Pose { r: rotation_about_axis(two, s[1]), p: scaled_vector(s[0], one) },
+        TestJointKind::Universal => {
             rotation_pose(matrix_product(&rotation_about_axis(x, s[0]), &rotation_about_axis(y, s[1])))
         }
-        Kind::Planar => Pose {
+        TestJointKind::Planar => Pose {
             r: rotation_about_axis(z, s[2]),
             p: sum_of_vectors(scaled_vector(s[0], x), scaled_vector(s[1], y)),
         },
-        Kind::Stage => translation_pose([s[0], s[1], s[2]]),
-        Kind::Ball | Kind::Free | Kind::Weld => rotation_pose(identity()),
+        TestJointKind::Stage => translation_pose([s[0], s[1], s[2]]),
+        TestJointKind::Ball | TestJointKind::Free | TestJointKind::Weld => rotation_pose(identity_matrix()),
     };
     (pose, s)
 }
 
 /// Returns the numbers of configuration coordinates and of velocities.
-pub fn coordinate_and_velocity_counts(spec: &Spec) -> (usize, usize) {
+pub fn coordinate_and_velocity_counts(spec: &MechanismSpec) -> (usize, usize) {
     spec.bodies.iter().fold((0, 0), |(nq, nv), body| {
         let (q, v) = body.kind.coordinate_and_velocity_counts();
         let own = usize::from(body.slider.is_some());
@@ -107,28 +115,32 @@ pub fn coordinate_and_velocity_counts(spec: &Spec) -> (usize, usize) {
     })
 }
 
-fn world_of_state(spec: &Spec, state: &State) -> World {
+fn world_of_state(spec: &MechanismSpec, state: &State) -> World {
     let mut world = World { poses: Vec::new(), pieces: Vec::new(), coordinates: Vec::new() };
     let (mut q0, mut v0) = (0, 0);
     for body in &spec.bodies {
         let (nq, nv) = body.kind.coordinate_and_velocity_counts();
-        let (motion, coordinates) =
-            joint_pose(body, &state.q[q0..q0 + nq], &state.v[v0..v0 + nv], &state.a[v0..v0 + nv]);
+        let (motion, coordinates) = joint_pose_and_coordinates(
+            body,
+            &state.q[q0..q0 + nq],
+            &state.v[v0..v0 + nv],
+            &state.a[v0..v0 + nv],
+        );
         (q0, v0) = (q0 + nq, v0 + nv);
-        let parent = body.parent.map_or(Pose::identity(), |k| world.poses[k]);
+        let parent = body.parent.map_or(Pose::identity_pose(), |k| world.poses[k]);
         let carried = compose_poses(&compose_poses(&parent, &pose_of_place(&body.on_parent)), &motion);
-        let pose = compose_poses(&carried, &inverse(&pose_of_place(&body.on_child)));
-        world.pieces.push(Piece {
+        let pose = compose_poses(&carried, &inverse_pose(&pose_of_place(&body.on_child)));
+        world.pieces.push(MovingBody {
             mass: body.mass,
             inertia: inertia_in_body_axes(body),
             r: pose.r,
             p: sum_of_vectors(pose.p, rotated_vector(&pose.r, constant_vector(body.com))),
         });
-        let mut particle = |mass: f64, p: Vector| {
-            world.pieces.push(Piece { mass, inertia: [[0.0; 3]; 3], r: identity(), p });
+        let mut add_particle = |mass: f64, p: Vector| {
+            world.pieces.push(MovingBody { mass, inertia: [[0.0; 3]; 3], r: identity_matrix(), p });
         };
         if let Some((mass, at)) = body.particle {
-            particle(mass, sum_of_vectors(pose.p, rotated_vector(&pose.r, constant_vector(at))));
+            add_particle(mass, sum_of_vectors(pose.p, rotated_vector(&pose.r, constant_vector(at))));
         }
         if let Some(slider) = &body.slider {
             let s = Jet([state.q[q0], state.v[v0], state.a[v0] * 0.5]);
@@ -137,7 +149,7 @@ fn world_of_state(spec: &Spec, state: &State) -> World {
             let mut p = sum_of_vectors(pose.p, rotated_vector(&pose.r, constant_vector([y, z, 0.0])));
             p[0] = p[0] + s;
             p[1] = p[1] + Jet::constant_series(x);
-            particle(slider.mass, p);
+            add_particle(slider.mass, p);
         }
         world.poses.push(pose);
         world.coordinates.push(coordinates);
@@ -151,7 +163,7 @@ fn inertia_in_body_axes(body: &Body) -> [[f64; 3]; 3] {
     from_fn(|i| from_fn(|j| (0..3).map(|k| r[i][k].0[0].re * body.moments[k] * r[j][k].0[0].re).sum()))
 }
 
-fn position_of_end(world: &World, end: &End) -> Vector {
+fn position_of_end(world: &World, end: &AttachmentPoint) -> Vector {
     match end.body {
         None => constant_vector(end.at),
         Some(k) => {
@@ -160,15 +172,15 @@ fn position_of_end(world: &World, end: &End) -> Vector {
     }
 }
 
-fn distance_between_ends(world: &World, a: &End, b: &End) -> Jet {
-    let d = difference(position_of_end(world, a), position_of_end(world, b));
+fn distance_between_ends(world: &World, a: &AttachmentPoint, b: &AttachmentPoint) -> Jet {
+    let d = difference_of_vectors(position_of_end(world, a), position_of_end(world, b));
     dot(d, d).sqrt()
 }
 
-fn length_of_path(world: &World, path: &Path) -> Jet {
+fn length_of_path(world: &World, path: &ForcePath) -> Jet {
     match path {
-        Path::Rope([a, b, c]) => distance_between_ends(world, a, b) + distance_between_ends(world, b, c),
-        Path::Cable { ends, around, radius, axis } => cable_length(world, ends, around, *radius, *axis),
+        ForcePath::Rope([a, b, c]) => distance_between_ends(world, a, b) + distance_between_ends(world, b, c),
+        ForcePath::Cable { ends, around, radius, axis } => cable_length(world, ends, around, *radius, *axis),
     }
 }
 
@@ -176,24 +188,30 @@ fn length_of_path(world: &World, path: &Path) -> Jet {
 /// axis, and the distance between the ends along the axis.
 fn cable_ends_in_obstacle_plane(
     world: &World,
-    ends: &[End; 2],
-    around: &End,
+    ends: &[AttachmentPoint; 2],
+    around: &AttachmentPoint,
     axis: Option<[f64; 3]>,
 ) -> ([Vector; 2], Jet, Option<Vector>) {
     let middle = position_of_end(world, around);
-    let from = ends.each_ref().map(|end| difference(position_of_end(world, end), middle));
+    let from = ends.each_ref().map(|end| difference_of_vectors(position_of_end(world, end), middle));
     let Some(axis) = axis else { return (from, Jet::constant_series(0.0), None) };
     let n = around
         .body
         .map_or(constant_vector(axis), |k| rotated_vector(&world.poses[k].r, constant_vector(axis)));
     let heights = from.map(|p| dot(p, n));
-    let in_plane_component_of_end = |k: usize| difference(from[k], n.map(|x| x * heights[k]));
+    let in_plane_component_of_end = |k: usize| difference_of_vectors(from[k], n.map(|x| x * heights[k]));
     ([in_plane_component_of_end(0), in_plane_component_of_end(1)], heights[1] - heights[0], Some(n))
 }
 
 /// Returns the length of a taut cable. In the plane normal to the axis, or in the plane of the ends and the
 /// centre of a ball, the cable is straight on the unrolled surface.
-fn cable_length(world: &World, ends: &[End; 2], around: &End, radius: f64, axis: Option<[f64; 3]>) -> Jet {
+fn cable_length(
+    world: &World,
+    ends: &[AttachmentPoint; 2],
+    around: &AttachmentPoint,
+    radius: f64,
+    axis: Option<[f64; 3]>,
+) -> Jet {
     let ([a, b], rise, n) = cable_ends_in_obstacle_plane(world, ends, around, axis);
     let normal = cross(a, b);
     let angle = match n {
@@ -207,7 +225,7 @@ fn cable_length(world: &World, ends: &[End; 2], around: &End, radius: f64, axis:
     let level = if arc.0[0].re > 0.0 {
         tangents[0] + tangents[1] + r * arc
     } else {
-        let d = difference(a, b);
+        let d = difference_of_vectors(a, b);
         dot(d, d).sqrt()
     };
     if n.is_none() { level } else { (level * level + rise * rise).sqrt() }
@@ -215,32 +233,38 @@ fn cable_length(world: &World, ends: &[End; 2], around: &End, radius: f64, axis:
 
 /// Scalar quantity whose motion is prescribed as a function of time.
 #[derive(Clone, Debug)]
-pub enum Measure {
+pub enum PrescribedQuantity {
     /// Weighted sum of coordinates: factor, body and index of the coordinate.
     Coordinates(Vec<(f64, usize, usize)>),
     /// Displacement between two points along an axis of the ground.
-    Way(End, End, usize),
+    Way(AttachmentPoint, AttachmentPoint, usize),
 }
 
 /// Returns the value of a measure at a state, with its first and second rates.
-pub fn value_of_measure(spec: &Spec, state: &State, measure: &Measure) -> Jet {
+pub fn series_of_prescribed_quantity(
+    spec: &MechanismSpec,
+    state: &State,
+    measure: &PrescribedQuantity,
+) -> Jet {
     let world = world_of_state(spec, state);
     match measure {
-        Measure::Coordinates(list) => {
+        PrescribedQuantity::Coordinates(list) => {
             list.iter().fold(Jet::constant_series(0.0), |sum, (factor, body, k)| {
                 sum + Jet::constant_series(*factor) * world.coordinates[*body][*k]
             })
         }
-        Measure::Way(a, b, axis) => difference(position_of_end(&world, a), position_of_end(&world, b))[*axis],
+        PrescribedQuantity::Way(a, b, axis) => {
+            difference_of_vectors(position_of_end(&world, a), position_of_end(&world, b))[*axis]
+        }
     }
 }
 
 /// Returns whether the ends of all cables are outside the balls and cylinders that the cables wrap around.
-pub fn are_cables_outside_surfaces(spec: &Spec, q: &[f64]) -> bool {
+pub fn are_cables_outside_surfaces(spec: &MechanismSpec, q: &[f64]) -> bool {
     let (_, nv) = coordinate_and_velocity_counts(spec);
     let world = world_of_state(spec, &State::new(q, &vec![0.0; nv], &vec![0.0; nv]));
     spec.elements.iter().all(|element| match element {
-        Element::Along(_, Path::Cable { ends, around, radius, axis }) => {
+        ForceElement::Along(_, ForcePath::Cable { ends, around, radius, axis }) => {
             let (ends, ..) = cable_ends_in_obstacle_plane(&world, ends, around, *axis);
             ends.iter().all(|p| dot(*p, *p).0[0].re > 1.1 * radius * radius)
         }
@@ -248,69 +272,73 @@ pub fn are_cables_outside_surfaces(spec: &Spec, q: &[f64]) -> bool {
     })
 }
 
-fn tension_of_law(law: Law, length: Jet) -> C {
+fn tension_of_law(law: ForceLaw, length: Jet) -> C {
     match law {
-        Law::Attraction(k) => (length.0[0] * length.0[0]).inv() * k,
-        Law::Friction(f) => {
+        ForceLaw::Attraction(k) => (length.0[0] * length.0[0]).inv() * k,
+        ForceLaw::Friction(f) => {
             let v = length.first_time_derivative();
             let peak = (-(v * v) / (f.stribeck_speed * f.stribeck_speed)).exp() * (f.stiction - f.coulomb);
             (peak + f.coulomb) * (v / f.speed).tanh() + v * f.viscous
         }
-        Law::Spring(k, free) => (length.0[0] - free) * k,
-        Law::Dashpot(c) => length.first_time_derivative() * c,
-        Law::Inerter(b) => length.second_time_derivative() * b,
+        ForceLaw::Spring(k, free) => (length.0[0] - free) * k,
+        ForceLaw::Dashpot(c) => length.first_time_derivative() * c,
+        ForceLaw::Inerter(b) => length.second_time_derivative() * b,
     }
 }
 
 /// Returns `τ = M a + h` as the sum over all masses and forces.
-pub fn inverse_dynamics(spec: &Spec, state: &State) -> Vec<C> {
+pub fn inverse_dynamics(spec: &MechanismSpec, state: &State) -> Vec<C> {
     let now = world_of_state(spec, state);
     let nv = state.v.len();
     (0..nv)
         .map(|k| {
-            let mut unit =
-                State { q: state.q.clone(), v: vec![real_number(0.0); nv], a: vec![real_number(0.0); nv] };
-            unit.v[k] = real_number(1.0);
+            let mut unit = State {
+                q: state.q.clone(),
+                v: vec![complex_from_real(0.0); nv],
+                a: vec![complex_from_real(0.0); nv],
+            };
+            unit.v[k] = complex_from_real(1.0);
             generalized_force(spec, &now, &world_of_state(spec, &unit))
         })
         .collect()
 }
 
 /// Returns the power `λᵀ τ` of the forces `τ` for velocities `λ`.
-pub fn power_of_forces(spec: &Spec, state: &State, lambda: &[f64]) -> C {
-    let rates = lambda.iter().map(|x| real_number(*x)).collect();
-    let partial = State { q: state.q.clone(), v: rates, a: vec![real_number(0.0); lambda.len()] };
+pub fn power_of_forces(spec: &MechanismSpec, state: &State, lambda: &[f64]) -> C {
+    let rates = lambda.iter().map(|x| complex_from_real(*x)).collect();
+    let partial = State { q: state.q.clone(), v: rates, a: vec![complex_from_real(0.0); lambda.len()] };
     generalized_force(spec, &world_of_state(spec, state), &world_of_state(spec, &partial))
 }
 
 /// Returns the generalized force for one generalized speed. `partial` is the motion in which only this
 /// generalized speed is nonzero, with the value one.
-fn generalized_force(spec: &Spec, now: &World, partial: &World) -> C {
-    let mut tau = real_number(0.0);
+fn generalized_force(spec: &MechanismSpec, now: &World, partial: &World) -> C {
+    let mut tau = complex_from_real(0.0);
     for (piece, moved) in now.pieces.iter().zip(&partial.pieces) {
-        tau += piece.inertial_force(moved, spec.gravity);
+        tau += piece.generalized_inertial_force(moved, spec.gravity);
     }
     for element in &spec.elements {
         tau += match element {
-            Element::Between(law, a, b) => {
+            ForceElement::Between(law, a, b) => {
                 tension_of_law(*law, distance_between_ends(now, a, b))
                     * distance_between_ends(partial, a, b).first_time_derivative()
             }
-            Element::Along(law, path) => {
+            ForceElement::Along(law, path) => {
                 tension_of_law(*law, length_of_path(now, path))
                     * length_of_path(partial, path).first_time_derivative()
             }
-            Element::On(law, body, k) => {
+            ForceElement::On(law, body, k) => {
                 tension_of_law(*law, now.coordinates[*body][*k])
                     * partial.coordinates[*body][*k].first_time_derivative()
             }
-            Element::Push(end, force) => {
-                -complex_dot(force.map(real_number), velocity_of_position(position_of_end(partial, end)))
+            ForceElement::Push(end, force) => -complex_dot(
+                force.map(complex_from_real),
+                velocity_of_position(position_of_end(partial, end)),
+            ),
+            ForceElement::Twist(body, torque) => {
+                -complex_dot(torque.map(complex_from_real), angular_motion(&partial.poses[*body].r).0)
             }
-            Element::Twist(body, torque) => {
-                -complex_dot(torque.map(real_number), angular_motion(&partial.poses[*body].r).0)
-            }
-            Element::Follow(end, force) => {
+            ForceElement::Follow(end, force) => {
                 let r = &now.poses[end.body.unwrap_or(0)].r;
                 let force: [C; 3] = from_fn(|i| (0..3).map(|j| r[i][j].0[0] * force[j]).sum());
                 -complex_dot(force, velocity_of_position(position_of_end(partial, end)))
@@ -321,24 +349,26 @@ fn generalized_force(spec: &Spec, now: &World, partial: &World) -> C {
 }
 
 /// Returns the mass matrix by columns, and the bias forces.
-pub fn mass_and_bias(spec: &Spec, q: &[C], v: &[C]) -> (Vec<Vec<C>>, Vec<C>) {
+pub fn mass_and_bias(spec: &MechanismSpec, q: &[C], v: &[C]) -> (Vec<Vec<C>>, Vec<C>) {
     let nv = v.len();
     let state_with_velocity = |v: &[C], a: Vec<C>| State { q: q.to_vec(), v: v.to_vec(), a };
-    let zero = vec![real_number(0.0); nv];
+    let zero = vec![complex_from_real(0.0); nv];
     let bias = inverse_dynamics(spec, &state_with_velocity(v, zero.clone()));
     // The mass matrix is computed without forces at rest. Subtracting forces would leave rounding errors.
-    let is_inerter = |element: &&Element| {
-        let (Element::Between(law, ..) | Element::On(law, ..) | Element::Along(law, _)) = element else {
+    let is_inerter = |element: &&ForceElement| {
+        let (ForceElement::Between(law, ..) | ForceElement::On(law, ..) | ForceElement::Along(law, _)) =
+            element
+        else {
             return false;
         };
-        matches!(law, Law::Inerter(_))
+        matches!(law, ForceLaw::Inerter(_))
     };
     let elements = spec.elements.iter().filter(is_inerter).cloned().collect();
-    let unloaded = Spec { gravity: [0.0; 3], elements, ..spec.clone() };
+    let unloaded = MechanismSpec { gravity: [0.0; 3], elements, ..spec.clone() };
     let columns = (0..nv)
         .map(|k| {
             let mut a = zero.clone();
-            a[k] = real_number(1.0);
+            a[k] = complex_from_real(1.0);
             inverse_dynamics(&unloaded, &state_with_velocity(&zero, a))
         })
         .collect();
@@ -347,15 +377,15 @@ pub fn mass_and_bias(spec: &Spec, q: &[C], v: &[C]) -> (Vec<Vec<C>>, Vec<C>) {
 
 /// Returns the configuration after an imaginary step along one velocity on the configuration manifold,
 /// `q ⊕ i h e`.
-pub fn configuration_after_imaginary_step(spec: &Spec, q: &[C], k: usize, h: f64) -> Vec<C> {
+pub fn configuration_after_imaginary_step(spec: &MechanismSpec, q: &[C], k: usize, h: f64) -> Vec<C> {
     stepped_configuration(spec, q, k, C::new(0.0, h))
 }
 
 /// Returns the point with parameter `h` of a curve on the configuration manifold that starts at `q` with
 /// these velocities.
-pub fn displaced_configuration(spec: &Spec, q: &[C], rates: &[f64], h: f64) -> Vec<C> {
+pub fn displaced_configuration(spec: &MechanismSpec, q: &[C], rates: &[f64], h: f64) -> Vec<C> {
     let step_coordinate =
-        |q: Vec<C>, (k, rate): (usize, &f64)| stepped_configuration(spec, &q, k, real_number(rate * h));
+        |q: Vec<C>, (k, rate): (usize, &f64)| stepped_configuration(spec, &q, k, complex_from_real(rate * h));
     let mut q = rates.iter().enumerate().fold(q.to_vec(), step_coordinate);
     let mut first = 0;
     for body in &spec.bodies {
@@ -372,7 +402,7 @@ pub fn displaced_configuration(spec: &Spec, q: &[C], rates: &[f64], h: f64) -> V
 
 /// Returns the configuration after a step along one velocity, `q ⊕ h e`. Terms of second order in `h` are
 /// neglected.
-fn stepped_configuration(spec: &Spec, q: &[C], k: usize, h: C) -> Vec<C> {
+fn stepped_configuration(spec: &MechanismSpec, q: &[C], k: usize, h: C) -> Vec<C> {
     let mut stepped = q.to_vec();
     let (mut q0, mut v0) = (0, 0);
     for body in &spec.bodies {
@@ -391,14 +421,14 @@ fn stepped_configuration(spec: &Spec, q: &[C], k: usize, h: C) -> Vec<C> {
     stepped
 }
 
-fn step_joint(kind: Kind, q: &mut [C], k: usize, h: C) {
+fn step_joint(kind: TestJointKind, q: &mut [C], k: usize, h: C) {
     match (kind, k) {
-        (Kind::Ball, _) => rotate_quaternion(q, k, h),
-        (Kind::Free, 0..3) => {
+        (TestJointKind::Ball, _) => rotate_quaternion(q, k, h),
+        (TestJointKind::Free, 0..3) => {
             let r = rotation_of_quaternion(&q[3..]);
             (0..3).for_each(|i| q[i] += r[i][k] * h);
         }
-        (Kind::Free, _) => rotate_quaternion(&mut q[3..], k - 3, h),
+        (TestJointKind::Free, _) => rotate_quaternion(&mut q[3..], k - 3, h),
         _ => q[k] += h,
     }
 }

@@ -2,8 +2,8 @@
 //! axes.
 
 use crate::jet::{
-    C, Jet, Matrix, Vector, constant_vector, cross, identity, matrix_product, real_number, rotated_vector,
-    sum_of_vectors, transposed_matrix,
+    C, Jet, Matrix, Vector, complex_from_real, constant_vector, cross, identity_matrix, matrix_product,
+    rotated_vector, sum_of_vectors, transposed_matrix,
 };
 use std::array::from_fn;
 
@@ -16,13 +16,13 @@ pub struct Pose {
 
 impl Pose {
     /// Returns the identity pose, at rest.
-    pub fn identity() -> Pose {
-        Pose { r: identity(), p: constant_vector([0.0; 3]) }
+    pub fn identity_pose() -> Pose {
+        Pose { r: identity_matrix(), p: constant_vector([0.0; 3]) }
     }
 }
 
 /// Rigid body with its mass, inertia and motion in ground axes.
-pub struct Piece {
+pub struct MovingBody {
     pub mass: f64,
     /// Inertia of the body about its centre of mass, in body axes.
     pub inertia: [[f64; 3]; 3],
@@ -32,7 +32,7 @@ pub struct Piece {
     pub p: Vector,
 }
 
-impl Piece {
+impl MovingBody {
     /// Returns the product of the inertia in ground axes and a vector.
     fn inertia_times_vector(&self, x: [C; 3]) -> [C; 3] {
         let r: [[C; 3]; 3] = from_fn(|i| from_fn(|j| self.r[i][j].0[0]));
@@ -42,7 +42,7 @@ impl Piece {
     }
 
     /// Returns the generalized inertial force, including gravity, for the partial velocity of `moved`.
-    pub fn inertial_force(&self, moved: &Piece, gravity: [f64; 3]) -> C {
+    pub fn generalized_inertial_force(&self, moved: &MovingBody, gravity: [f64; 3]) -> C {
         let force: [C; 3] = from_fn(|i| (self.p[i].second_time_derivative() - gravity[i]) * self.mass);
         let (w, alpha) = angular_motion(&self.r);
         let (first, second) = (self.inertia_times_vector(alpha), cross(w, self.inertia_times_vector(w)));
@@ -63,7 +63,7 @@ pub fn compose_poses(a: &Pose, b: &Pose) -> Pose {
 }
 
 /// Returns the inverse of a pose.
-pub fn inverse(pose: &Pose) -> Pose {
+pub fn inverse_pose(pose: &Pose) -> Pose {
     let r = transposed_matrix(&pose.r);
     Pose { r, p: rotated_vector(&r, pose.p).map(|x| -x) }
 }
@@ -71,8 +71,8 @@ pub fn inverse(pose: &Pose) -> Pose {
 /// Returns the rotation matrix of a quaternion (x, y, z, w).
 pub fn rotation_of_quaternion(q: &[C]) -> [[C; 3]; 3] {
     let (x, y, z, w) = (q[0], q[1], q[2], q[3]);
-    let two = real_number(2.0);
-    let one = real_number(1.0);
+    let two = complex_from_real(2.0);
+    let one = complex_from_real(1.0);
     [
         [one - two * (y * y + z * z), two * (x * y - z * w), two * (x * z + y * w)],
         [two * (x * y + z * w), one - two * (x * x + z * z), two * (y * z - x * w)],
@@ -85,7 +85,7 @@ pub fn rotation_of_quaternion(q: &[C]) -> [[C; 3]; 3] {
 pub fn rotating_orientation(q: &[C], w: [C; 3], rate: [C; 3]) -> Matrix {
     let r0 = rotation_of_quaternion(q);
     let skew_matrix = |w: [C; 3]| {
-        let o = real_number(0.0);
+        let o = complex_from_real(0.0);
         [[o, -w[2], w[1]], [w[2], o, -w[0]], [-w[1], w[0], o]]
     };
     let (k, l) = (skew_matrix(w), skew_matrix(rate));

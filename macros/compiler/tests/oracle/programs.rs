@@ -1,16 +1,16 @@
 //! Comparison of the generated programs with Kane's equations.
 
-use crate::jet::{C, real_number};
+use crate::jet::{C, complex_from_real};
 use crate::kane::{self, State};
 use crate::random::Random;
-use crate::spec::Spec;
+use crate::spec::MechanismSpec;
 use crate::words;
-use linkwork_compiler::catalogue::Called;
-use linkwork_compiler::derive::{Function, Output};
+use linkwork_compiler::catalogue::CalledFunction;
+use linkwork_compiler::derive::{DerivationOutput, Function};
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::mechanism::{Quantity, SuppliedQuantity};
-use linkwork_compiler::{compile, read_source};
+use linkwork_compiler::{compile, parse_source_and_import};
 use std::path::Path;
 
 /// Maximum difference, relative to the terms whose sum a result is.
@@ -22,7 +22,7 @@ const STEP: f64 = 1e-40;
 const H: f64 = 3e-3;
 
 /// State and generalized forces at which programs are compared with the oracle.
-struct Point {
+struct EvaluationPoint {
     q: Vec<f64>,
     v: Vec<f64>,
     a: Vec<f64>,
@@ -32,8 +32,8 @@ struct Point {
     along: [Vec<f64>; 3],
 }
 
-impl Point {
-    fn new(spec: &Spec, seed: u64) -> Point {
+impl EvaluationPoint {
+    fn new(spec: &MechanismSpec, seed: u64) -> EvaluationPoint {
         let (nq, nv) = kane::coordinate_and_velocity_counts(spec);
         let mut random = Random::new(seed ^ 0x5eed);
         let mut list =
@@ -48,7 +48,7 @@ impl Point {
             }
             first += own + usize::from(body.slider.is_some());
         }
-        Point { q, v, a, tau, lambda, along }
+        EvaluationPoint { q, v, a, tau, lambda, along }
     }
 }
 
@@ -58,8 +58,8 @@ fn normalise_quaternion(q: &mut [f64]) {
 }
 
 /// Compiles a mechanism and compares every function of its dynamics with the oracle.
-pub fn check_mechanism(spec: &Spec, seed: u64) {
-    let point = Point::new(spec, seed);
+pub fn check_mechanism(spec: &MechanismSpec, seed: u64) {
+    let point = EvaluationPoint::new(spec, seed);
     // The length of a cable that starts inside its obstacle is undefined.
     if !kane::are_cables_outside_surfaces(spec, &point.q) {
         return;
@@ -72,19 +72,30 @@ pub fn check_mechanism(spec: &Spec, seed: u64) {
 
 /// Compares the functions of a mechanism, with the derivatives of the option `word`, with the oracle. Returns
 /// false if the derivatives are too long.
-fn check_functions_with_derivatives(spec: &Spec, word: &str, point: &Point, seed: u64) -> bool {
+fn check_functions_with_derivatives(
+    spec: &MechanismSpec,
+    word: &str,
+    point: &EvaluationPoint,
+    seed: u64,
+) -> bool {
     let (arguments, item) = words::mechanism_source(spec, "Random", word);
     let parse_tokens = |text: &str| text.parse().expect("the generated source is Rust");
     let mut cx = Diagnostics::new();
     let graph = Graph::new();
-    let source = read_source(parse_tokens(&arguments), parse_tokens(&item), Path::new(""), &mut cx);
+    let source =
+        parse_source_and_import(parse_tokens(&arguments), parse_tokens(&item), Path::new(""), &mut cx);
     let compiled = source.as_ref().and_then(|source| compile(source, &graph, &mut cx));
     let Some((model, output)) = compiled else {
-        assert!(graph.is_full(), "seed {seed}: {}\n{arguments}\n{item}", cx.messages().join("\n"));
+        assert!(graph.is_full(), "seed {seed}: {}\n{arguments}\n{item}", cx.full_message_texts().join("\n"));
         return false;
     };
     assert_eq!((model.nq(), model.nv()), kane::coordinate_and_velocity_counts(spec), "seed {seed}\n{item}");
-    let case = Case { spec, output: &output, point, name: format!("seed {seed}\n{arguments}\n{item}") };
+    let case = CompiledTestMechanism {
+        spec,
+        output: &output,
+        point,
+        name: format!("seed {seed}\n{arguments}\n{item}"),
+    };
     case.check_dynamics();
     case.check_derivatives();
     // Second derivatives take longest, so they are tested for fewer seeds.
@@ -94,14 +105,14 @@ fn check_functions_with_derivatives(spec: &Spec, word: &str, point: &Point, seed
     true
 }
 
-struct Case<'a> {
-    spec: &'a Spec,
-    output: &'a Output,
-    point: &'a Point,
+struct CompiledTestMechanism<'a> {
+    spec: &'a MechanismSpec,
+    output: &'a DerivationOutput,
+    point: &'a EvaluationPoint,
     name: String,
 }
 
-impl Case<'_> {
+impl CompiledTestMechanism<'_> {
     /// Returns the results of a function, from its scalar program and from its program with lanes.
     fn run_function(&self, name: &str) -> Vec<Vec<f64>> {
         let function: &Function = self
@@ -110,7 +121,7 @@ impl Case<'_> {
             .iter()
             .find(|f| f.name == name)
             .unwrap_or_else(|| panic!("no function {name}"));
-        let value_of_symbol = |s| match Quantity::from_symbol(s) {
+        let state_value_of_symbol = |s| match Quantity::from_symbol(s) {
             Quantity::Parameter(k) => self.spec.bodies[k].mass,
             Quantity::Configuration(k) => self.point.q[k],
             Quantity::Velocity(k) => self.point.v[k],
@@ -120,20 +131,20 @@ impl Case<'_> {
             _ => f64::NAN,
         };
         // The results of called functions are inputs of their callers.
-        let called = Called::ALL.map(|called| {
+        let called = CalledFunction::ALL.map(|called| {
             let function = self.output.functions.iter().find(|f| f.name == called.function_name());
-            function.map_or_else(Vec::new, |f| f.program.interpret_program(&value_of_symbol))
+            function.map_or_else(Vec::new, |f| f.program.interpret_program(&state_value_of_symbol))
         });
-        let symbol_value = |s| match Quantity::from_symbol(s) {
+        let symbol_value_including_called_results = |s| match Quantity::from_symbol(s) {
             Quantity::PassiveForce(k) => called[0][k],
             Quantity::PassiveDerivative(k) => called[1][k],
-            _ => value_of_symbol(s),
+            _ => state_value_of_symbol(s),
         };
         let program = &function.program;
         [Some(program), program.simd.as_deref()]
             .into_iter()
             .flatten()
-            .map(|p| p.interpret_program(&symbol_value))
+            .map(|p| p.interpret_program(&symbol_value_including_called_results))
             .collect()
     }
 
@@ -151,7 +162,7 @@ impl Case<'_> {
     }
 
     fn check_dynamics(&self) {
-        let Point { q, v, a, tau, .. } = &self.point;
+        let EvaluationPoint { q, v, a, tau, .. } = &self.point;
         let state = State::new(q, v, a);
         let (columns, bias) = kane::mass_and_bias(self.spec, &state.q, &state.v);
         let mass: Vec<f64> = columns.iter().flatten().map(|x| x.re).collect();
@@ -187,7 +198,7 @@ impl Case<'_> {
     }
 
     fn check_derivatives(&self) {
-        let Point { q, v, a, .. } = &self.point;
+        let EvaluationPoint { q, v, a, .. } = &self.point;
         let nv = v.len();
         let state = State::new(q, v, a);
         let imaginary_parts_over_step =
@@ -202,7 +213,7 @@ impl Case<'_> {
         }
         for k in 0..nv {
             let mut stepped = state.clone();
-            stepped.v[k] = real_number(v[k]) + C::new(0.0, STEP);
+            stepped.v[k] = complex_from_real(v[k]) + C::new(0.0, STEP);
             expected.extend(imaginary_parts_over_step(kane::inverse_dynamics(self.spec, &stepped)));
         }
         let scale = expected.iter().fold(1.0_f64, |m, x| m.max(x.abs()));
@@ -212,7 +223,7 @@ impl Case<'_> {
     /// Compares the product of second derivatives and a direction with sixth-order differences along it of
     /// derivatives by imaginary steps. The order of differentiation is also exchanged.
     fn check_second_derivatives(&self) {
-        let Point { q, v, a, lambda, along, .. } = &self.point;
+        let EvaluationPoint { q, v, a, lambda, along, .. } = &self.point;
         let (nv, state) = (v.len(), State::new(q, v, a));
         let expected: Vec<f64> =
             (0..3 * nv).map(|entry| self.mixed_derivative(&state, entry, 0.5 * H)).collect();
@@ -226,13 +237,13 @@ impl Case<'_> {
             .map(|name| self.run_function(name).concat());
         let scale = sizes.iter().flatten().chain(&expected).fold(1.0_f64, |m, x| m.max(x.abs()));
         for found in self.run_function("inverse_dynamics_second_derivatives") {
-            let second_derivative = |b: usize, i: usize, j: usize| found[b * nv * nv + j * nv + i];
+            let second_derivative_entry = |b: usize, i: usize, j: usize| found[b * nv * nv + j * nv + i];
             for i in 0..nv {
                 let row_product = |b: usize, along: &[f64]| {
-                    (0..nv).map(|j| second_derivative(b, i, j) * along[j]).sum::<f64>()
+                    (0..nv).map(|j| second_derivative_entry(b, i, j) * along[j]).sum::<f64>()
                 };
                 let column_product =
-                    |b: usize| (0..nv).map(|j| second_derivative(b, j, i) * along[0][j]).sum::<f64>();
+                    |b: usize| (0..nv).map(|j| second_derivative_entry(b, j, i) * along[0][j]).sum::<f64>();
                 let products = [
                     row_product(0, &along[0]) + row_product(1, &along[1]) + row_product(3, &along[2]),
                     column_product(1) + row_product(2, &along[1]),
@@ -255,7 +266,7 @@ impl Case<'_> {
     /// respect to one entry of `q`, `v` or `a`, once along the direction. It is the mean of both orders of
     /// differentiation, by finite differences with steps of `size`.
     fn mixed_derivative(&self, state: &State, entry: usize, size: f64) -> f64 {
-        let Point { lambda, along, .. } = &self.point;
+        let EvaluationPoint { lambda, along, .. } = &self.point;
         let nv = lambda.len();
         let mut unit = [vec![0.0; nv], vec![0.0; nv], vec![0.0; nv]];
         unit[entry / nv][entry % nv] = 1.0;
@@ -276,7 +287,7 @@ impl Case<'_> {
         let difference_quotient = |outer: &[Vec<f64>; 3], inner: &[Vec<f64>; 3]| {
             let power_derivative_at_displacement = |h: f64| {
                 let add_real_step = |list: &[C], rates: &[f64]| -> Vec<C> {
-                    list.iter().zip(rates).map(|(x, rate)| x + real_number(h * rate)).collect()
+                    list.iter().zip(rates).map(|(x, rate)| x + complex_from_real(h * rate)).collect()
                 };
                 let q = kane::displaced_configuration(self.spec, &state.q, &outer[0], h);
                 power_derivative_along(

@@ -1,11 +1,11 @@
 //! Random robots: as files, as the order of their coordinates, and as poses of their links in a motion.
 
 use crate::jet::{
-    C, Jet, Matrix, constant_vector, identity, matrix_product, rotation_about_axis, scaled_vector,
+    C, Jet, Matrix, constant_vector, identity_matrix, matrix_product, rotation_about_axis, scaled_vector,
     sum_of_vectors,
 };
 use crate::kane::State;
-use crate::motion::{Piece, Pose, compose_poses, position_moving_with_velocity, rotating_orientation};
+use crate::motion::{MovingBody, Pose, compose_poses, position_moving_with_velocity, rotating_orientation};
 use crate::random::Random;
 use std::array::from_fn;
 use std::fmt::Write;
@@ -46,10 +46,13 @@ pub struct Robot {
 
 /// Returns the rotation matrix `R_z(yaw) R_y(pitch) R_x(roll)` of roll, pitch and yaw.
 pub fn rotation_of_rpy([roll, pitch, yaw]: [f64; 3]) -> Matrix {
-    let axis_rotation = |k: usize, angle| {
+    let coordinate_axis_rotation = |k: usize, angle| {
         rotation_about_axis(from_fn(|i| f64::from(u8::from(i == k))), Jet::constant_series(angle))
     };
-    matrix_product(&matrix_product(&axis_rotation(2, yaw), &axis_rotation(1, pitch)), &axis_rotation(0, roll))
+    matrix_product(
+        &matrix_product(&coordinate_axis_rotation(2, yaw), &coordinate_axis_rotation(1, pitch)),
+        &coordinate_axis_rotation(0, roll),
+    )
 }
 
 impl Link {
@@ -100,7 +103,7 @@ impl Joint {
             (_, 0) => random.four_digit_numbers::<3>().map(|x| x + if x < 0.0 { -0.1 } else { 0.1 }),
             (_, k) => from_fn(|i| if i == k { random.four_digit_number() - 2.0 } else { 0.0 }),
         };
-        let leaders: Vec<usize> = (1..child).filter(|k| links[*k].can_lead_joints()).collect();
+        let leaders: Vec<usize> = (1..child).filter(|k| links[*k].can_joint_be_mimicked()).collect();
         let follows = kind < 3 && !leaders.is_empty() && random.index_below(4) == 0;
         Joint {
             name: format!("{}{child}", ["j", "J", "a", "joint_"][random.index_below(4)]),
@@ -127,7 +130,7 @@ impl Joint {
 
 impl Link {
     /// Returns true if other joints may follow the joint of this link.
-    fn can_lead_joints(&self) -> bool {
+    fn can_joint_be_mimicked(&self) -> bool {
         self.joint.as_ref().is_some_and(|j| j.kind < 3 && !j.locked && j.mimic.is_none())
     }
 
@@ -165,7 +168,7 @@ impl Robot {
                     let Link { name, inertial, .. } = &self.links[*k];
                     let _ = writeln!(text, "<link name=\"{name}\">{inertial}</link>");
                 }
-                Some(k) => self.write_joint(&mut text, k + 1),
+                Some(k) => self.write_urdf_joint(&mut text, k + 1),
             }
         }
         text + "</robot>"
@@ -229,11 +232,11 @@ impl Robot {
                 )
             }
         };
-        let joint = |k: usize| self.links[k].joint.as_ref();
+        let joint_of_link = |k: usize| self.links[k].joint.as_ref();
         let mut children: Vec<usize> = (1..self.links.len())
-            .filter(|child| joint(*child).is_some_and(|joint| joint.parent == k))
+            .filter(|child| joint_of_link(*child).is_some_and(|joint| joint.parent == k))
             .collect();
-        children.sort_by_key(|k| joint(*k).map(|joint| joint.name.clone()));
+        children.sort_by_key(|k| joint_of_link(*k).map(|joint| joint.name.clone()));
         let children: String = children.into_iter().map(|child| self.mjcf_body(child, inside)).collect();
         let ([xx, xy, xz], [_, yy, yz], [_, _, zz]) = (inertia[0], inertia[1], inertia[2]);
         format!(
@@ -261,7 +264,7 @@ impl Robot {
         )
     }
 
-    fn write_joint(&self, text: &mut String, child: usize) {
+    fn write_urdf_joint(&self, text: &mut String, child: usize) {
         let Some(joint) = &self.links[child].joint else { return };
         let mimic = joint.mimic.map(|(leader, factor, offset)| {
             let leader = self.links[leader].joint.as_ref().map_or("", |joint| &joint.name);
@@ -282,7 +285,7 @@ impl Robot {
         );
     }
 
-    pub fn locked_joints(&self) -> impl Iterator<Item = &str> {
+    pub fn locked_joint_names(&self) -> impl Iterator<Item = &str> {
         self.links.iter().filter_map(|link| link.joint.as_ref()).filter(|j| j.locked).map(|j| j.name.as_str())
     }
 
@@ -340,8 +343,10 @@ impl Robot {
         let entries = self.joint_start_indices();
         let total_size =
             |k: usize| self.links.iter().map(|link| link.joint_entry_counts(self.free)[k]).sum::<usize>();
-        let mut numbers = |n: usize| -> Vec<f64> { (0..n).map(|_| random.four_digit_number()).collect() };
-        let (mut q, v, a) = (numbers(total_size(0)), numbers(total_size(1)), numbers(total_size(1)));
+        let mut random_numbers =
+            |n: usize| -> Vec<f64> { (0..n).map(|_| random.four_digit_number()).collect() };
+        let (mut q, v, a) =
+            (random_numbers(total_size(0)), random_numbers(total_size(1)), random_numbers(total_size(1)));
         for (link, [first, _]) in self.links.iter().zip(entries) {
             let [n, _] = link.joint_entry_counts(self.free);
             if n == 4 || n == 7 {
@@ -367,20 +372,22 @@ impl Robot {
         let mut places: Vec<Pose> = Vec::new();
         for (k, link) in self.links.iter().enumerate() {
             let Some(joint) = &link.joint else {
-                places.push(if self.free { floating_pose(state, entries[k]) } else { Pose::identity() });
+                places.push(if self.free { floating_pose(state, entries[k]) } else { Pose::identity_pose() });
                 continue;
             };
             let start = Pose { r: rotation_of_rpy(joint.rpy), p: constant_vector(joint.xyz) };
             let moved = match joint.mimic {
-                _ if joint.locked => Pose::identity(),
+                _ if joint.locked => Pose::identity_pose(),
                 Some((leader, factor, offset)) => {
                     let angle = coordinate_series(state, entries[leader]);
-                    joint.pose_at_coordinate(
+                    joint.joint_pose_at_coordinate(
                         angle * Jet::constant_series(factor) + Jet::constant_series(offset),
                     )
                 }
-                None if joint.kind < 3 => joint.pose_at_coordinate(coordinate_series(state, entries[k])),
-                None => joint.pose_at_state(state, entries[k]),
+                None if joint.kind < 3 => {
+                    joint.joint_pose_at_coordinate(coordinate_series(state, entries[k]))
+                }
+                None => joint.joint_pose_at_state(state, entries[k]),
             };
             let there = compose_poses(&places[joint.parent], &start);
             places.push(compose_poses(&there, &moved));
@@ -389,15 +396,15 @@ impl Robot {
     }
 
     /// Returns the moving bodies of the robot with their masses and poses.
-    pub fn moving_bodies(&self, state: &State) -> Vec<Piece> {
+    pub fn moving_bodies(&self, state: &State) -> Vec<MovingBody> {
         let places = self.poses_of_links(state);
         let moving = (0..self.links.len()).filter(|k| self.can_move_link(*k));
-        let rigid_piece_of_link = |k: usize| {
+        let moving_body_of_link = |k: usize| {
             let Link { mass, com, inertia, .. } = self.links[k];
-            let center = Pose { r: identity(), p: constant_vector(com) };
-            Piece { mass, inertia, r: places[k].r, p: compose_poses(&places[k], &center).p }
+            let center = Pose { r: identity_matrix(), p: constant_vector(com) };
+            MovingBody { mass, inertia, r: places[k].r, p: compose_poses(&places[k], &center).p }
         };
-        moving.map(rigid_piece_of_link).collect()
+        moving.map(moving_body_of_link).collect()
     }
 }
 
@@ -409,22 +416,23 @@ impl Joint {
 
     /// Returns the pose of a joint that rotates about its axis or slides along it, at a value of its
     /// coordinate.
-    fn pose_at_coordinate(&self, coordinate: Jet) -> Pose {
+    fn joint_pose_at_coordinate(&self, coordinate: Jet) -> Pose {
         match KINDS[self.kind] {
-            "prismatic" => Pose { p: scaled_vector(coordinate, self.unit_axis()), ..Pose::identity() },
-            _ => Pose { r: rotation_about_axis(self.unit_axis(), coordinate), ..Pose::identity() },
+            "prismatic" => Pose { p: scaled_vector(coordinate, self.unit_axis()), ..Pose::identity_pose() },
+            _ => Pose { r: rotation_about_axis(self.unit_axis(), coordinate), ..Pose::identity_pose() },
         }
     }
 
     /// Returns the pose of a joint with several coordinates, or none.
-    fn pose_at_state(&self, state: &State, [q, v]: [usize; 2]) -> Pose {
+    fn joint_pose_at_state(&self, state: &State, [q, v]: [usize; 2]) -> Pose {
         match KINDS[self.kind] {
             "floating" => floating_pose(state, [q, v]),
             "planar" => {
                 let normal = self.axis.iter().position(|x| *x != 0.0).unwrap_or(0);
-                let unit_axis = |k: usize| from_fn(|i| f64::from(u8::from(i == (normal + k) % 3)));
-                let planar_shift_along =
-                    |k: usize| scaled_vector(coordinate_series(state, [q + k - 1, v + k - 1]), unit_axis(k));
+                let in_plane_unit_axis = |k: usize| from_fn(|i| f64::from(u8::from(i == (normal + k) % 3)));
+                let planar_shift_along = |k: usize| {
+                    scaled_vector(coordinate_series(state, [q + k - 1, v + k - 1]), in_plane_unit_axis(k))
+                };
                 let r = rotation_about_axis(self.unit_axis(), coordinate_series(state, [q + 2, v + 2]));
                 Pose { r, p: sum_of_vectors(planar_shift_along(1), planar_shift_along(2)) }
             }
@@ -434,9 +442,9 @@ impl Joint {
                     three_entries_from(&state.v, v),
                     three_entries_from(&state.a, v),
                 );
-                Pose { r, ..Pose::identity() }
+                Pose { r, ..Pose::identity_pose() }
             }
-            _ => Pose::identity(),
+            _ => Pose::identity_pose(),
         }
     }
 }

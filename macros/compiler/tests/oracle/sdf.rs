@@ -40,7 +40,7 @@ impl RigidPose {
         RigidPose(rows, xyz)
     }
 
-    fn then_inner_pose(&self, inner: &RigidPose) -> RigidPose {
+    fn composed_with_inner_pose(&self, inner: &RigidPose) -> RigidPose {
         let columns = transposed_matrix(&inner.0).map(|column| rotate_vector(&self.0, column));
         let moved = rotate_vector(&self.0, inner.1);
         RigidPose(transposed_matrix(&columns), from_fn(|k| self.1[k] + moved[k]))
@@ -74,7 +74,7 @@ pub fn sdf_text(robot: &Robot, random: &mut Random) -> String {
     let mut placed = vec![RigidPose::ZERO];
     for link in &robot.links[1..] {
         let parent = link.joint.as_ref().map_or(RigidPose::ZERO, |joint| {
-            placed[joint.parent].then_inner_pose(&RigidPose::new(joint.xyz, joint.rpy))
+            placed[joint.parent].composed_with_inner_pose(&RigidPose::new(joint.xyz, joint.rpy))
         });
         placed.push(parent);
     }
@@ -98,7 +98,12 @@ pub fn sdf_text(robot: &Robot, random: &mut Random) -> String {
 impl Writer<'_> {
     /// Returns the attribute of a pose that names a random link before link `k`, with the pose of that link.
     /// May also return an empty attribute and the pose `usual`.
-    fn random_base_pose(&self, k: usize, usual: RigidPose, random: &mut Random) -> (String, RigidPose) {
+    fn random_reference_attribute_and_pose(
+        &self,
+        k: usize,
+        usual: RigidPose,
+        random: &mut Random,
+    ) -> (String, RigidPose) {
         let word = match self.minor {
             ..5 => "",
             5 | 6 => "frame",
@@ -113,14 +118,14 @@ impl Writer<'_> {
 
     fn link_text(&self, k: usize, random: &mut Random) -> String {
         let Link { mass, com, inertia, .. } = self.robot.links[k];
-        let (attribute, base) = self.random_base_pose(k, RigidPose::ZERO, random);
-        let pose = base.inverse_pose().then_inner_pose(&self.placed[k]).pose_text();
+        let (attribute, base) = self.random_reference_attribute_and_pose(k, RigidPose::ZERO, random);
+        let pose = base.inverse_pose().composed_with_inner_pose(&self.placed[k]).pose_text();
         // Before version 1.7, the pose of the inertial frame may be relative to other links.
-        let center = self.placed[k].then_inner_pose(&RigidPose::new(com, [0.0; 3]));
+        let center = self.placed[k].composed_with_inner_pose(&RigidPose::new(com, [0.0; 3]));
         let usual = (String::new(), self.placed[k]);
         let (of_center, base) =
-            if self.minor < 7 { self.random_base_pose(k, usual.1, random) } else { usual };
-        let center = base.inverse_pose().then_inner_pose(&center).pose_text();
+            if self.minor < 7 { self.random_reference_attribute_and_pose(k, usual.1, random) } else { usual };
+        let center = base.inverse_pose().composed_with_inner_pose(&center).pose_text();
         let entries =
             [(0, 0, "ixx"), (0, 1, "ixy"), (0, 2, "ixz"), (1, 1, "iyy"), (1, 2, "iyz"), (2, 2, "izz")];
         let entries: String =

@@ -1,6 +1,6 @@
 //! Random MJCF files with motors on sites: the power of forces and torques compared with partial velocities.
 
-use crate::jet::{C, constant_vector, cross, real_number};
+use crate::jet::{C, complex_from_real, constant_vector, cross};
 use crate::kane::State;
 use crate::motion::{Pose, angular_motion, complex_dot, velocity_of_position};
 use crate::random::Random;
@@ -10,27 +10,27 @@ use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::{Graph, Symbol};
 use linkwork_compiler::mechanism::Quantity;
 use linkwork_compiler::resolve::build_model;
-use linkwork_compiler::{derive, read_source};
+use linkwork_compiler::{derive, parse_source_and_import};
 use std::array::from_fn;
 use std::path::Path;
 
 /// Generalized forces as a function of configuration, velocities and inputs.
-type Function = dyn Fn(&[f64], &[f64], &[f64]) -> Vec<f64>;
+type GeneralizedForceFunction = dyn Fn(&[f64], &[f64], &[f64]) -> Vec<f64>;
 
 /// Names of the coordinates and inputs of a file, and its generalized forces.
-struct Forces {
+struct GeneralizedForceModel {
     coordinates: Vec<String>,
     inputs: Vec<String>,
-    values: Box<Function>,
+    values: Box<GeneralizedForceFunction>,
 }
 
-fn forces_of_motors(text: &str, locked: &[String]) -> Forces {
+fn forces_of_motors(text: &str, locked: &[String]) -> GeneralizedForceModel {
     let thread = std::thread::current().id();
     let file = std::env::temp_dir().join(format!("linkwork-sites-{}-{thread:?}.xml", std::process::id()));
     std::fs::write(&file, text).expect("a file");
     let mut cx = Diagnostics::new();
     let arguments = format!("mjcf = {:?}, lock = {locked:?}", file.to_string_lossy());
-    let source = read_source(
+    let source = parse_source_and_import(
         arguments.parse().expect("arguments"),
         "pub struct Robot;".parse().expect("a struct"),
         Path::new("/"),
@@ -38,11 +38,14 @@ fn forces_of_motors(text: &str, locked: &[String]) -> Forces {
     );
     // Files that remain in the folder for temporary files do no harm.
     let _ = std::fs::remove_file(&file);
-    let source = source.filter(|_| cx.is_empty()).unwrap_or_else(|| panic!("{:?}\n{text}", cx.messages()));
+    let source =
+        source.filter(|_| cx.is_empty()).unwrap_or_else(|| panic!("{:?}\n{text}", cx.full_message_texts()));
     let graph = Graph::new();
     let model = build_model(&source.mechanism.description, &graph, &mut cx);
     let output = model.as_ref().and_then(|model| derive(model, &mut cx));
-    let (Some(model), Some(output)) = (&model, output) else { panic!("{:?}\n{text}", cx.messages()) };
+    let (Some(model), Some(output)) = (&model, output) else {
+        panic!("{:?}\n{text}", cx.full_message_texts())
+    };
     let (coordinates, inputs) =
         (model.configuration.clone(), model.inputs.iter().map(|(name, _)| name.clone()));
     let inputs = inputs.collect();
@@ -58,7 +61,7 @@ fn forces_of_motors(text: &str, locked: &[String]) -> Forces {
             .as_ref()
             .map_or_else(Vec::new, |function| function.program.interpret_program(&value_of_symbol))
     };
-    Forces { coordinates, inputs, values: Box::new(evaluate_forces) }
+    GeneralizedForceModel { coordinates, inputs, values: Box::new(evaluate_forces) }
 }
 
 /// Site of a random MJCF file: a frame on a link or on the ground.
@@ -77,7 +80,7 @@ impl Site {
         }
     }
 
-    fn site_text(&self, name: &str) -> String {
+    fn mjcf_site_element(&self, name: &str) -> String {
         format!(
             "<site name=\"{name}\" pos=\"{}\" euler=\"{}\"/>",
             space_separated_text(self.xyz),
@@ -85,7 +88,7 @@ impl Site {
         )
     }
 
-    fn pose_of_site(&self, robot: &Robot, state: &State) -> Pose {
+    fn site_pose_in_ground(&self, robot: &Robot, state: &State) -> Pose {
         let ground = Pose { r: rotation_of_rpy(self.rpy), p: constant_vector(self.xyz) };
         self.link.map_or(ground, |link| robot.pose_of_frame(link, self.xyz, self.rpy, state))
     }
@@ -102,7 +105,7 @@ impl Motor {
     /// Returns the power of the motor for a unit input: the power of its force and torque in the motion
     /// relative to the reference site.
     fn motor_power_for_unit_input(&self, sites: &[Site], robot: &Robot, state: &State) -> C {
-        let [on, against] = self.sites.map(|k| sites[k].pose_of_site(robot, state));
+        let [on, against] = self.sites.map(|k| sites[k].site_pose_in_ground(robot, state));
         let axes = if self.against { &against } else { &on };
         let vector_in_ground =
             |v: [f64; 3]| -> [C; 3] { from_fn(|i| (0..3).map(|j| axes.r[i][j].0[0] * v[j]).sum()) };
@@ -145,7 +148,8 @@ fn random_site_motors_do_the_work_of_their_forces() {
                 Motor { sites: [link + 1, other], against: random.index_below(2) == 0, gear }
             })
             .collect();
-        let text_of_site_in_link = |link: usize| sites[link + 1].site_text(&format!("s{}", link + 1));
+        let mjcf_site_element_of_link =
+            |link: usize| sites[link + 1].mjcf_site_element(&format!("s{}", link + 1));
         let mjcf_motor_element = |(k, motor): (usize, &Motor)| {
             let [on, other] = motor.sites;
             let against = if motor.against { format!(" refsite=\"s{other}\"") } else { String::new() };
@@ -154,9 +158,9 @@ fn random_site_motors_do_the_work_of_their_forces() {
         };
         let motors_text: String = motors.iter().enumerate().map(mjcf_motor_element).collect();
         let text = robot
-            .mjcf_text(&text_of_site_in_link, &format!("<actuator>{motors_text}</actuator>"))
-            .replace("<worldbody>", &format!("<worldbody>{}", sites[0].site_text("s0")));
-        let locked: Vec<String> = robot.locked_joints().map(str::to_string).collect();
+            .mjcf_text(&mjcf_site_element_of_link, &format!("<actuator>{motors_text}</actuator>"))
+            .replace("<worldbody>", &format!("<worldbody>{}", sites[0].mjcf_site_element("s0")));
+        let locked: Vec<String> = robot.locked_joint_names().map(str::to_string).collect();
         if !(0..links).any(|link| robot.can_move_link(link)) {
             continue;
         }
@@ -172,7 +176,9 @@ fn random_site_motors_do_the_work_of_their_forces() {
             let expected: C = motors
                 .iter()
                 .zip(&u)
-                .map(|(motor, u)| motor.motor_power_for_unit_input(&sites, &robot, &state) * real_number(*u))
+                .map(|(motor, u)| {
+                    motor.motor_power_for_unit_input(&sites, &robot, &state) * complex_from_real(*u)
+                })
                 .sum();
             let expected = expected.re;
             assert!(

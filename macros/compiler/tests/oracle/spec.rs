@@ -4,7 +4,7 @@ use crate::random::Random;
 
 /// Joint type of random test mechanisms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum TestJointKind {
     Pin,
     Sleeve,
     Screw,
@@ -19,41 +19,41 @@ pub enum Kind {
 }
 
 /// All joint types of random test mechanisms.
-pub const KINDS: [Kind; 11] = [
-    Kind::Pin,
-    Kind::Sleeve,
-    Kind::Screw,
-    Kind::Collar,
-    Kind::Slot,
-    Kind::Universal,
-    Kind::Planar,
-    Kind::Stage,
-    Kind::Ball,
-    Kind::Free,
-    Kind::Weld,
+pub const KINDS: [TestJointKind; 11] = [
+    TestJointKind::Pin,
+    TestJointKind::Sleeve,
+    TestJointKind::Screw,
+    TestJointKind::Collar,
+    TestJointKind::Slot,
+    TestJointKind::Universal,
+    TestJointKind::Planar,
+    TestJointKind::Stage,
+    TestJointKind::Ball,
+    TestJointKind::Free,
+    TestJointKind::Weld,
 ];
 
-impl Kind {
+impl TestJointKind {
     /// Returns the numbers of configuration coordinates and velocities.
     pub fn coordinate_and_velocity_counts(self) -> (usize, usize) {
         match self {
-            Kind::Pin | Kind::Sleeve | Kind::Screw => (1, 1),
-            Kind::Collar | Kind::Slot | Kind::Universal => (2, 2),
-            Kind::Planar | Kind::Stage => (3, 3),
-            Kind::Ball => (4, 3),
-            Kind::Free => (7, 6),
-            Kind::Weld => (0, 0),
+            TestJointKind::Pin | TestJointKind::Sleeve | TestJointKind::Screw => (1, 1),
+            TestJointKind::Collar | TestJointKind::Slot | TestJointKind::Universal => (2, 2),
+            TestJointKind::Planar | TestJointKind::Stage => (3, 3),
+            TestJointKind::Ball => (4, 3),
+            TestJointKind::Free => (7, 6),
+            TestJointKind::Weld => (0, 0),
         }
     }
 
     /// Returns the coordinates that an element can act on, in the order of the velocities.
-    pub fn coordinate_names(self) -> &'static [&'static str] {
+    pub fn suffixes_of_actuatable_coordinates(self) -> &'static [&'static str] {
         match self {
-            Kind::Pin | Kind::Sleeve | Kind::Screw => &[""],
-            Kind::Collar | Kind::Slot => &[".slide", ".turn"],
-            Kind::Universal => &[".first", ".second"],
-            Kind::Planar => &[".x", ".y", ".angle"],
-            Kind::Stage => &[".x", ".y", ".z"],
+            TestJointKind::Pin | TestJointKind::Sleeve | TestJointKind::Screw => &[""],
+            TestJointKind::Collar | TestJointKind::Slot => &[".slide", ".turn"],
+            TestJointKind::Universal => &[".first", ".second"],
+            TestJointKind::Planar => &[".x", ".y", ".angle"],
+            TestJointKind::Stage => &[".x", ".y", ".z"],
             _ => &[],
         }
     }
@@ -61,14 +61,14 @@ impl Kind {
 
 /// Pose on a body: a position, followed by rotations about successive coordinate axes.
 #[derive(Clone, Debug, Default)]
-pub struct Place {
+pub struct Placement {
     pub at: [f64; 3],
     pub turns: Vec<(usize, f64)>,
 }
 
 /// Particle that a coordinate moves along an axis of the ground, relative to a point of a body.
 #[derive(Clone, Debug)]
-pub struct Slider {
+pub struct SlidingParticle {
     pub mass: f64,
     pub offset: [f64; 3],
 }
@@ -76,11 +76,11 @@ pub struct Slider {
 /// Body of a random test mechanism, with the joint to its parent.
 #[derive(Clone, Debug)]
 pub struct Body {
-    pub kind: Kind,
+    pub kind: TestJointKind,
     /// Parent body, to which the joint connects this body; `None` for the ground.
     pub parent: Option<usize>,
-    pub on_parent: Place,
-    pub on_child: Place,
+    pub on_parent: Placement,
+    pub on_child: Placement,
     /// Unit vectors of the first and the second axis of the joint.
     pub axes: [[f64; 3]; 2],
     pub pitch: f64,
@@ -91,19 +91,19 @@ pub struct Body {
     pub inertia_turns: Vec<(usize, f64)>,
     /// Mass and position of a particle that is fixed on the body.
     pub particle: Option<(f64, [f64; 3])>,
-    pub slider: Option<Slider>,
+    pub slider: Option<SlidingParticle>,
 }
 
 /// End of a force element: a point of a body or of the ground.
 #[derive(Clone, Debug)]
-pub struct End {
+pub struct AttachmentPoint {
     pub body: Option<usize>,
     pub at: [f64; 3],
 }
 
 /// Law of an element between two points, on a coordinate, or on the length of a path.
 #[derive(Clone, Copy, Debug)]
-pub enum Law {
+pub enum ForceLaw {
     /// Spring, with its stiffness and free length.
     Spring(f64, f64),
     /// Dashpot, with its damping coefficient.
@@ -113,12 +113,12 @@ pub enum Law {
     /// Strength of an attraction with the inverse square of the distance; only between two points.
     Attraction(f64),
     /// Dry friction, which acts only on coordinates.
-    Friction(Friction),
+    Friction(FrictionParameters),
 }
 
 /// Parameters of a dry friction law with Stribeck effect.
 #[derive(Clone, Copy, Debug)]
-pub struct Friction {
+pub struct FrictionParameters {
     pub coulomb: f64,
     pub stiction: f64,
     pub stribeck_speed: f64,
@@ -129,37 +129,37 @@ pub struct Friction {
 
 /// Path along which a force element acts, by the path's length.
 #[derive(Clone, Debug)]
-pub enum Path {
+pub enum ForcePath {
     /// Rope of straight segments through three points.
-    Rope([End; 3]),
+    Rope([AttachmentPoint; 3]),
     /// Cable between two points that wraps around a ball, or around a cylinder whose axis is given in the
     /// frame of its body.
-    Cable { ends: [End; 2], around: End, radius: f64, axis: Option<[f64; 3]> },
+    Cable { ends: [AttachmentPoint; 2], around: AttachmentPoint, radius: f64, axis: Option<[f64; 3]> },
 }
 
 /// Force element of a random test mechanism.
 #[derive(Clone, Debug)]
-pub enum Element {
+pub enum ForceElement {
     /// Force element along the straight line between two points.
-    Between(Law, End, End),
+    Between(ForceLaw, AttachmentPoint, AttachmentPoint),
     /// Force element along a rope or a cable.
-    Along(Law, Path),
+    Along(ForceLaw, ForcePath),
     /// Element on a coordinate of a body's joint: law, body, coordinate.
-    On(Law, usize, usize),
+    On(ForceLaw, usize, usize),
     /// Force in ground axes at a point of a body.
-    Push(End, [f64; 3]),
+    Push(AttachmentPoint, [f64; 3]),
     /// Force in body axes at a point of a body.
-    Follow(End, [f64; 3]),
+    Follow(AttachmentPoint, [f64; 3]),
     /// Input torque on a body, in ground axes.
     Twist(usize, [f64; 3]),
 }
 
 /// Random test mechanism as plain data: gravity, bodies and force elements.
 #[derive(Clone, Debug)]
-pub struct Spec {
+pub struct MechanismSpec {
     pub gravity: [f64; 3],
     pub bodies: Vec<Body>,
-    pub elements: Vec<Element>,
+    pub elements: Vec<ForceElement>,
     /// Whether the masses of the bodies are parameters instead of numbers.
     pub symbolic: bool,
 }
@@ -178,9 +178,9 @@ pub struct GeneratorSettings {
 }
 
 /// Source of random numbers and choices for a random mechanism.
-struct Source(Random);
+struct RandomSource(Random);
 
-impl Source {
+impl RandomSource {
     fn index_below(&mut self, n: usize) -> usize {
         self.0.index_below(n)
     }
@@ -205,7 +205,7 @@ impl Source {
         if let Some(noise) = style.noise {
             axis = axis.map(|x| x + self.0.uniform_number(noise));
         }
-        unit_vector(axis)
+        unit_vector_along(axis)
     }
 
     fn random_rotations(&mut self, style: &GeneratorSettings) -> Vec<(usize, f64)> {
@@ -223,11 +223,11 @@ impl Source {
             .collect()
     }
 
-    fn random_joint_placement(&mut self, style: &GeneratorSettings) -> Place {
+    fn random_joint_placement(&mut self, style: &GeneratorSettings) -> Placement {
         match self.index_below(4) {
-            0 => Place::default(),
-            1 => Place { at: self.random_vector(0.5), turns: Vec::new() },
-            _ => Place { at: self.random_vector(0.5), turns: self.random_rotations(style) },
+            0 => Placement::default(),
+            1 => Placement { at: self.random_vector(0.5), turns: Vec::new() },
+            _ => Placement { at: self.random_vector(0.5), turns: self.random_rotations(style) },
         }
     }
 
@@ -235,7 +235,7 @@ impl Source {
         10.0_f64.powf(self.0.uniform_number(style.decades)) * (1.3 + self.0.uniform_number(0.8))
     }
 
-    fn random_body(&mut self, kind: Kind, parent: Option<usize>, style: &GeneratorSettings) -> Body {
+    fn random_body(&mut self, kind: TestJointKind, parent: Option<usize>, style: &GeneratorSettings) -> Body {
         let mass = self.random_mass(style);
         // Moments of a cuboid are always physically possible.
         let sides = self.random_vector(0.4).map(|s| s * s + 0.05);
@@ -245,7 +245,7 @@ impl Source {
             parent,
             on_parent: self.random_joint_placement(style),
             on_child: if self.happens_one_time_in(2) {
-                Place::default()
+                Placement::default()
             } else {
                 self.random_joint_placement(style)
             },
@@ -258,48 +258,48 @@ impl Source {
             particle: self.happens_one_time_in(6).then(|| (self.random_mass(style), self.random_vector(0.5))),
             slider: self
                 .happens_one_time_in(12)
-                .then(|| Slider { mass: self.random_mass(style), offset: self.random_vector(0.5) }),
+                .then(|| SlidingParticle { mass: self.random_mass(style), offset: self.random_vector(0.5) }),
         }
     }
 
-    fn random_attachment_point(&mut self, body: Option<usize>) -> End {
-        End { body, at: self.random_vector(0.8) }
+    fn random_attachment_point(&mut self, body: Option<usize>) -> AttachmentPoint {
+        AttachmentPoint { body, at: self.random_vector(0.8) }
     }
 
-    fn random_force_law(&mut self) -> Law {
+    fn random_force_law(&mut self) -> ForceLaw {
         let size = 1.5 + self.0.uniform_number(1.0);
         match self.index_below(3) {
-            0 => Law::Spring(4.0 * size, self.0.uniform_number(0.3).abs()),
-            1 => Law::Dashpot(size),
-            _ => Law::Inerter(0.5 * size),
+            0 => ForceLaw::Spring(4.0 * size, self.0.uniform_number(0.3).abs()),
+            1 => ForceLaw::Dashpot(size),
+            _ => ForceLaw::Inerter(0.5 * size),
         }
     }
 
-    fn random_law_between_points(&mut self) -> Law {
+    fn random_law_between_points(&mut self) -> ForceLaw {
         if self.happens_one_time_in(4) {
-            Law::Attraction(self.0.uniform_number(2.0))
+            ForceLaw::Attraction(self.0.uniform_number(2.0))
         } else {
             self.random_force_law()
         }
     }
 
-    fn random_friction_law(&mut self) -> Law {
-        let mut size = || 1.0 + self.0.uniform_number(0.7);
-        let (coulomb, stribeck_speed) = (size(), 0.4 * size());
-        Law::Friction(Friction {
+    fn random_friction_law(&mut self) -> ForceLaw {
+        let mut random_number_near_one = || 1.0 + self.0.uniform_number(0.7);
+        let (coulomb, stribeck_speed) = (random_number_near_one(), 0.4 * random_number_near_one());
+        ForceLaw::Friction(FrictionParameters {
             coulomb,
-            stiction: coulomb * (1.0 + 0.5 * size()),
+            stiction: coulomb * (1.0 + 0.5 * random_number_near_one()),
             stribeck_speed,
-            viscous: 0.3 * size(),
-            speed: 0.3 * size(),
+            viscous: 0.3 * random_number_near_one(),
+            speed: 0.3 * random_number_near_one(),
         })
     }
 
     /// Returns a rope over a peg, or a cable around a round obstacle on any body.
-    fn random_cable_path(&mut self, bodies: &[Body], one: usize) -> Option<Path> {
+    fn random_cable_path(&mut self, bodies: &[Body], one: usize) -> Option<ForcePath> {
         let other = self.random_body_or_ground(bodies);
         if self.happens_one_time_in(2) {
-            return Some(Path::Rope([
+            return Some(ForcePath::Rope([
                 self.random_attachment_point(None),
                 self.random_attachment_point(Some(one)),
                 self.random_attachment_point(other),
@@ -312,14 +312,14 @@ impl Source {
             return None;
         }
         let around = self.random_body_or_ground(bodies);
-        Some(Path::Cable {
+        Some(ForcePath::Cable {
             ends: [self.random_attachment_point(other), self.random_attachment_point(Some(one))],
             around: self.random_attachment_point(around),
             radius: 0.2 + self.0.uniform_number(0.15),
             axis: self.happens_one_time_in(2).then(|| {
                 let mut axis = self.random_vector(1.0);
                 axis[self.index_below(3)] += 1.5;
-                unit_vector(axis)
+                unit_vector_along(axis)
             }),
         })
     }
@@ -329,17 +329,17 @@ impl Source {
         self.index_below(bodies.len() + 1).checked_sub(1)
     }
 
-    fn random_element(&mut self, bodies: &[Body]) -> Option<Element> {
+    fn random_element(&mut self, bodies: &[Body]) -> Option<ForceElement> {
         let one = self.index_below(bodies.len());
         // Forces cannot move a body that is welded to the ground.
         if is_welded_to_ground(bodies, one) {
             return None;
         }
         Some(match self.index_below(9) {
-            0 => Element::Push(self.random_attachment_point(Some(one)), self.random_vector(3.0)),
-            1 => Element::Follow(self.random_attachment_point(Some(one)), self.random_vector(3.0)),
+            0 => ForceElement::Push(self.random_attachment_point(Some(one)), self.random_vector(3.0)),
+            1 => ForceElement::Follow(self.random_attachment_point(Some(one)), self.random_vector(3.0)),
             2 => {
-                let coordinates = bodies[one].kind.coordinate_names();
+                let coordinates = bodies[one].kind.suffixes_of_actuatable_coordinates();
                 if coordinates.is_empty() {
                     return None;
                 }
@@ -348,22 +348,24 @@ impl Source {
                 } else {
                     self.random_force_law()
                 };
-                Element::On(law, one, self.index_below(coordinates.len()))
+                ForceElement::On(law, one, self.index_below(coordinates.len()))
             }
-            3 => Element::Between(
+            3 => ForceElement::Between(
                 self.random_law_between_points(),
                 self.random_attachment_point(None),
                 self.random_attachment_point(Some(one)),
             ),
-            4 => Element::Along(self.random_force_law(), self.random_cable_path(bodies, one)?),
-            5 if has_rotating_joint(bodies, one) => Element::Twist(one, self.random_vector(3.0)),
+            4 => ForceElement::Along(self.random_force_law(), self.random_cable_path(bodies, one)?),
+            5 if can_rotate_relative_to_ground(bodies, one) => {
+                ForceElement::Twist(one, self.random_vector(3.0))
+            }
             _ => {
                 let other = self.index_below(bodies.len());
                 // Bodies that are welded together have a constant distance.
                 if rigidly_connected_root(bodies, other) == rigidly_connected_root(bodies, one) {
                     return None;
                 }
-                Element::Between(
+                ForceElement::Between(
                     self.random_law_between_points(),
                     self.random_attachment_point(Some(other)),
                     self.random_attachment_point(Some(one)),
@@ -376,16 +378,17 @@ impl Source {
 /// Returns the body that a body is rigidly connected to by welds; `None` for the ground.
 fn rigidly_connected_root(bodies: &[Body], body: usize) -> Option<usize> {
     match (bodies[body].kind, bodies[body].parent) {
-        (Kind::Weld, None) => None,
-        (Kind::Weld, Some(parent)) => rigidly_connected_root(bodies, parent),
+        (TestJointKind::Weld, None) => None,
+        (TestJointKind::Weld, Some(parent)) => rigidly_connected_root(bodies, parent),
         _ => Some(body),
     }
 }
 
 /// Returns whether a joint between the ground and the body rotates.
-fn has_rotating_joint(bodies: &[Body], body: usize) -> bool {
-    let own = !matches!(bodies[body].kind, Kind::Sleeve | Kind::Stage | Kind::Weld);
-    own || bodies[body].parent.is_some_and(|parent| has_rotating_joint(bodies, parent))
+fn can_rotate_relative_to_ground(bodies: &[Body], body: usize) -> bool {
+    let own =
+        !matches!(bodies[body].kind, TestJointKind::Sleeve | TestJointKind::Stage | TestJointKind::Weld);
+    own || bodies[body].parent.is_some_and(|parent| can_rotate_relative_to_ground(bodies, parent))
 }
 
 fn is_welded_to_ground(bodies: &[Body], body: usize) -> bool {
@@ -393,30 +396,30 @@ fn is_welded_to_ground(bodies: &[Body], body: usize) -> bool {
 }
 
 /// Returns the unit vector in a direction, computed like the language's `unit`.
-fn unit_vector(v: [f64; 3]) -> [f64; 3] {
+fn unit_vector_along(v: [f64; 3]) -> [f64; 3] {
     let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
     v.map(|x| x / length)
 }
 
 /// Joint types of limbs; common types occur more often.
-const LIMB_KINDS: [Kind; 12] = [
-    Kind::Pin,
-    Kind::Pin,
-    Kind::Pin,
-    Kind::Sleeve,
-    Kind::Screw,
-    Kind::Ball,
-    Kind::Universal,
-    Kind::Collar,
-    Kind::Slot,
-    Kind::Planar,
-    Kind::Stage,
-    Kind::Free,
+const LIMB_KINDS: [TestJointKind; 12] = [
+    TestJointKind::Pin,
+    TestJointKind::Pin,
+    TestJointKind::Pin,
+    TestJointKind::Sleeve,
+    TestJointKind::Screw,
+    TestJointKind::Ball,
+    TestJointKind::Universal,
+    TestJointKind::Collar,
+    TestJointKind::Slot,
+    TestJointKind::Planar,
+    TestJointKind::Stage,
+    TestJointKind::Free,
 ];
 
 /// Returns the random mechanism that a seed determines.
-pub fn random_mechanism_spec(seed: u64, style: GeneratorSettings) -> Spec {
-    let mut source = Source(Random::new(seed));
+pub fn random_mechanism_spec(seed: u64, style: GeneratorSettings) -> MechanismSpec {
+    let mut source = RandomSource(Random::new(seed));
     let mut bodies: Vec<Body> = Vec::new();
     let rigged = if style.limbs > 0 { add_identical_limbs(&mut source, &style, &mut bodies) } else { 0 };
     if style.limbs == 0 {
@@ -425,34 +428,43 @@ pub fn random_mechanism_spec(seed: u64, style: GeneratorSettings) -> Spec {
             let parent = (k > 0 && !source.happens_one_time_in(8)).then(|| source.index_below(k));
             // Floating bases are most frequent in applications.
             let kind = match parent {
-                None if source.happens_one_time_in(3) => Kind::Free,
+                None if source.happens_one_time_in(3) => TestJointKind::Free,
                 _ => KINDS[source.index_below(KINDS.len())],
             };
             let body = source.random_body(kind, parent, &style);
             bodies.push(body);
         }
-        if bodies.iter().all(|body| body.kind == Kind::Weld) {
-            bodies[0].kind = Kind::Ball;
+        if bodies.iter().all(|body| body.kind == TestJointKind::Weld) {
+            bodies[0].kind = TestJointKind::Ball;
         }
     }
     let tries = source.index_below(4) + rigged;
     let elements = (0..tries).filter_map(|_| source.random_element(&bodies)).collect();
-    Spec { gravity: source.random_vector(10.0), bodies, elements, symbolic: source.happens_one_time_in(2) }
+    MechanismSpec {
+        gravity: source.random_vector(10.0),
+        bodies,
+        elements,
+        symbolic: source.happens_one_time_in(2),
+    }
 }
 
 /// Adds identical limbs to a trunk. Returns the number of further elements to generate.
-fn add_identical_limbs(source: &mut Source, style: &GeneratorSettings, bodies: &mut Vec<Body>) -> usize {
+fn add_identical_limbs(
+    source: &mut RandomSource,
+    style: &GeneratorSettings,
+    bodies: &mut Vec<Body>,
+) -> usize {
     let trunk = match source.index_below(4) {
         0 => None,
-        1 => Some(Kind::Free),
-        2 => Some(Kind::Pin),
+        1 => Some(TestJointKind::Free),
+        2 => Some(TestJointKind::Pin),
         _ => Some(KINDS[source.index_below(KINDS.len())]),
     };
     if let Some(kind) = trunk {
         bodies.push(source.random_body(kind, None, style));
     }
     let root = bodies.len().checked_sub(1);
-    let joints: Vec<Kind> =
+    let joints: Vec<TestJointKind> =
         (0..1 + source.index_below(2)).map(|_| LIMB_KINDS[source.index_below(LIMB_KINDS.len())]).collect();
     let plain: Vec<Body> = joints.iter().map(|kind| source.random_body(*kind, None, style)).collect();
     let same = source.happens_one_time_in(2);

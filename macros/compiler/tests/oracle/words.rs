@@ -1,12 +1,15 @@
 //! Writer of random test mechanisms as source text.
 
-use crate::spec::{Body, Element, End, Friction, Kind, Law, Path, Place, Spec};
+use crate::spec::{
+    AttachmentPoint, Body, ForceElement, ForceLaw, ForcePath, FrictionParameters, MechanismSpec, Placement,
+    TestJointKind,
+};
 use std::fmt::Write;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// Returns the source text of a random mechanism: arguments of the attribute, and the struct.
-pub fn mechanism_source(spec: &Spec, name: &str, requests: &str) -> (String, String) {
+pub fn mechanism_source(spec: &MechanismSpec, name: &str, requests: &str) -> (String, String) {
     let mut out = String::new();
     for (k, body) in spec.bodies.iter().enumerate() {
         write_body(k, body, spec.symbolic, &mut out);
@@ -64,7 +67,7 @@ fn body_name(body: Option<usize>) -> String {
     body.map_or("ground".to_string(), |k| format!("body{k}"))
 }
 
-fn placement_text(name: &str, place: &Place) -> String {
+fn placement_text(name: &str, place: &Placement) -> String {
     let at = if place.at == [0.0; 3] { String::new() } else { format!(".at({:?})", place.at) };
     format!("{name}{at}{}", rotation_text(&place.turns))
 }
@@ -80,90 +83,100 @@ fn rotation_text(turns: &[(usize, f64)]) -> String {
 fn joint_axes_source_text(body: &Body) -> String {
     let [a, b] = body.axes.map(|axis| format!("unit({axis:?})"));
     match body.kind {
-        Kind::Pin | Kind::Collar => format!(", about = {a}"),
-        Kind::Sleeve => format!(", along = {a}"),
-        Kind::Screw => format!(", about = {a}, pitch = {:?}", body.pitch),
-        Kind::Slot => format!(", along = {a}, about = {b}"),
-        Kind::Universal => ", about = (x, y)".to_string(),
-        Kind::Planar => ", along = (x, y)".to_string(),
-        Kind::Stage => ", along = (x, y, z)".to_string(),
-        Kind::Ball | Kind::Free | Kind::Weld => String::new(),
+        TestJointKind::Pin | TestJointKind::Collar => format!(", about = {a}"),
+        TestJointKind::Sleeve => format!(", along = {a}"),
+        TestJointKind::Screw => format!(", about = {a}, pitch = {:?}", body.pitch),
+        TestJointKind::Slot => format!(", along = {a}, about = {b}"),
+        TestJointKind::Universal => ", about = (x, y)".to_string(),
+        TestJointKind::Planar => ", along = (x, y)".to_string(),
+        TestJointKind::Stage => ", along = (x, y, z)".to_string(),
+        TestJointKind::Ball | TestJointKind::Free | TestJointKind::Weld => String::new(),
     }
 }
 
-pub fn end_text(end: &End) -> String {
+pub fn attachment_point_text(end: &AttachmentPoint) -> String {
     format!("{}.at({:?})", body_name(end.body), end.at)
 }
 
-fn write_element(k: usize, element: &Element, bodies: &[Body], out: &mut String) {
+fn write_element(k: usize, element: &ForceElement, bodies: &[Body], out: &mut String) {
     let _ = match element {
-        Element::Between(law, a, b) => {
+        ForceElement::Between(law, a, b) => {
             let (words, kind) = force_law_source_text(*law, "free_length");
             writeln!(
                 out,
                 "#[acts(between = ({}, {}), {words})] element{k}: {kind},",
-                end_text(a),
-                end_text(b)
+                attachment_point_text(a),
+                attachment_point_text(b)
             )
         }
-        Element::Along(law, path) => {
+        ForceElement::Along(law, path) => {
             let (words, kind) = force_law_source_text(*law, "free_length");
             writeln!(out, "#[acts(on = {}, {words})] element{k}: {kind},", force_path_source_text(path))
         }
-        Element::On(law, body, coordinate) => {
+        ForceElement::On(law, body, coordinate) => {
             let kind = bodies[*body].kind;
-            let which = kind.coordinate_names()[*coordinate];
+            let which = kind.suffixes_of_actuatable_coordinates()[*coordinate];
             let is_angle = matches!(which, ".turn" | ".first" | ".second" | ".angle")
-                || matches!(kind, Kind::Pin | Kind::Screw);
+                || matches!(kind, TestJointKind::Pin | TestJointKind::Screw);
             let free = if is_angle { "free_angle" } else { "free_length" };
             let (words, kind) = force_law_source_text(*law, free);
             writeln!(out, "#[acts(on = joint{body}{which}, {words})] element{k}: {kind},")
         }
-        Element::Push(end, [x, y, z]) => writeln!(
+        ForceElement::Push(end, [x, y, z]) => writeln!(
             out,
             "#[acts(on = {}, value = ({x:?}) * ground.x + ({y:?}) * ground.y + ({z:?}) * ground.z)] \
              element{k}: Force,",
-            end_text(end)
+            attachment_point_text(end)
         ),
-        Element::Twist(body, [x, y, z]) => writeln!(
+        ForceElement::Twist(body, [x, y, z]) => writeln!(
             out,
             "#[acts(on = body{body}, value = ({x:?}) * ground.x + ({y:?}) * ground.y + ({z:?}) * ground.z)] \
              element{k}: Torque,"
         ),
-        Element::Follow(end, [x, y, z]) => {
+        ForceElement::Follow(end, [x, y, z]) => {
             let b = body_name(end.body);
             writeln!(
                 out,
                 "#[acts(on = {}, value = ({x:?}) * {b}.x + ({y:?}) * {b}.y + ({z:?}) * {b}.z)] element{k}: \
                  Force,",
-                end_text(end)
+                attachment_point_text(end)
             )
         }
     };
 }
 
-fn force_path_source_text(path: &Path) -> String {
+fn force_path_source_text(path: &ForcePath) -> String {
     match path {
-        Path::Rope([a, b, c]) => {
-            format!("norm(r({0} / {1})) + norm(r({1} / {2}))", end_text(a), end_text(b), end_text(c))
+        ForcePath::Rope([a, b, c]) => {
+            format!(
+                "norm(r({0} / {1})) + norm(r({1} / {2}))",
+                attachment_point_text(a),
+                attachment_point_text(b),
+                attachment_point_text(c)
+            )
         }
-        Path::Cable { ends: [a, b], around, radius, axis } => {
+        ForcePath::Cable { ends: [a, b], around, radius, axis } => {
             let surface = match axis {
                 None => format!("sphere({radius:?})"),
                 Some(axis) => format!("cylinder({radius:?}, unit({axis:?}))"),
             };
-            format!("cable({} / {}, {}.{surface})", end_text(a), end_text(b), end_text(around))
+            format!(
+                "cable({} / {}, {}.{surface})",
+                attachment_point_text(a),
+                attachment_point_text(b),
+                attachment_point_text(around)
+            )
         }
     }
 }
 
-fn force_law_source_text(law: Law, free: &str) -> (String, &'static str) {
+fn force_law_source_text(law: ForceLaw, free: &str) -> (String, &'static str) {
     match law {
-        Law::Spring(k, free_value) => (format!("stiffness = {k:?}, {free} = {free_value:?}"), "Spring"),
-        Law::Dashpot(c) => (format!("damping = {c:?}"), "Dashpot"),
-        Law::Inerter(b) => (format!("inertance = {b:?}"), "Inerter"),
-        Law::Attraction(k) => (format!("strength = {k:?}"), "Attraction"),
-        Law::Friction(Friction { coulomb, stiction, stribeck_speed, viscous, speed }) => (
+        ForceLaw::Spring(k, free_value) => (format!("stiffness = {k:?}, {free} = {free_value:?}"), "Spring"),
+        ForceLaw::Dashpot(c) => (format!("damping = {c:?}"), "Dashpot"),
+        ForceLaw::Inerter(b) => (format!("inertance = {b:?}"), "Inerter"),
+        ForceLaw::Attraction(k) => (format!("strength = {k:?}"), "Attraction"),
+        ForceLaw::Friction(FrictionParameters { coulomb, stiction, stribeck_speed, viscous, speed }) => (
             format!(
                 "coulomb = {coulomb:?}, stiction = {stiction:?}, stribeck_speed = {stribeck_speed:?}, \
                  viscous = {viscous:?}, speed = {speed:?}"

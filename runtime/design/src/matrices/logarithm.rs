@@ -1,6 +1,6 @@
 //! Matrix logarithm.
 
-use super::{C, CMatrix, Schur, checked_square_size, complex_matrix};
+use super::{C, CMatrix, Schur, checked_square_size, to_complex_matrix};
 use crate::Error;
 use nalgebra::DMatrix;
 
@@ -30,7 +30,7 @@ pub fn logarithm(a: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
     if n == 0 {
         return Ok(a.clone());
     }
-    let Schur { q, mut t } = Schur::new(&complex_matrix(a))?;
+    let Schur { q, mut t } = Schur::new(&to_complex_matrix(a))?;
     let largest = t.diagonal().iter().map(|x| x.norm()).fold(0.0, f64::max);
     for x in t.diagonal().iter() {
         let rounding = 1e-13 * largest;
@@ -44,7 +44,7 @@ pub fn logarithm(a: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
         if roots == MAX_ROOTS {
             return Err(Error::NotConverged { what: "the logarithm" });
         }
-        t = square_root(&t);
+        t = square_root_of_triangular(&t);
         roots += 1;
     }
     let e = &t - &identity;
@@ -59,7 +59,7 @@ pub fn logarithm(a: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
 }
 
 /// Returns the square root of an upper triangular matrix (Björck and Hammarling, 1983).
-fn square_root(t: &CMatrix) -> CMatrix {
+fn square_root_of_triangular(t: &CMatrix) -> CMatrix {
     let n = t.nrows();
     let mut r = CMatrix::zeros(n, n);
     for j in 0..n {

@@ -1,7 +1,7 @@
 //! Solvers of Sylvester and Lyapunov equations by Schur forms (Bartels and Stewart, *Solution of the matrix
 //! equation AX + XB = C*, 1972), with one step of iterative refinement.
 
-use super::{C, CMatrix, Schur, check_matrix, checked_square_size, complex_matrix, symmetric_part};
+use super::{C, CMatrix, Schur, check_matrix, checked_square_size, symmetric_part, to_complex_matrix};
 use crate::Error;
 use nalgebra::{DMatrix, DVector};
 
@@ -23,13 +23,13 @@ struct SylvesterForms {
 
 impl SylvesterForms {
     fn new(a: &DMatrix<f64>, b: &DMatrix<f64>, kind: SylvesterKind) -> Result<Self, Error> {
-        Ok(Self { left: Schur::new(&complex_matrix(a))?, right: Schur::new(&complex_matrix(b))?, kind })
+        Ok(Self { left: Schur::new(&to_complex_matrix(a))?, right: Schur::new(&to_complex_matrix(b))?, kind })
     }
 
     /// Solves the Sylvester equation `A X + X B = F`, or `A X B − X = F`, for `X`.
     fn solve_sylvester_equation(&self, f: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
         let (t, s) = (&self.left.t, &self.right.t);
-        let f = self.left.q.adjoint() * complex_matrix(f) * &self.right.q;
+        let f = self.left.q.adjoint() * to_complex_matrix(f) * &self.right.q;
         let mut y = CMatrix::zeros(f.nrows(), f.ncols());
         for k in 0..f.ncols() {
             let mut before = CVector::zeros(f.nrows());

@@ -2,8 +2,8 @@
 //! by an invariant subspace or by doubling; Newton's method refines both solutions.
 
 use super::{
-    C, CMatrix, Schur, balance_matrix, balance_system, check_matrix, checked_square_size, complex_matrix,
-    discrete_lyapunov, eigenvalues, lyapunov, smallest_singular_value, solve_linear_system, symmetric_part,
+    C, CMatrix, Schur, balance_matrix, balance_system, check_matrix, checked_square_size, discrete_lyapunov,
+    eigenvalues, lyapunov, smallest_singular_value, solve_linear_system, symmetric_part, to_complex_matrix,
 };
 use crate::Error;
 use nalgebra::DMatrix;
@@ -120,7 +120,7 @@ pub fn riccati(a: &DMatrix<f64>, b: &DMatrix<f64>, cost: &Cost) -> Result<Riccat
     h.view_mut((n, n), (n, n)).copy_from(&-f.transpose());
     let d = symplectic_scaling(&h);
     let scaled = DMatrix::from_fn(2 * n, 2 * n, |i, j| h[(i, j)] * d[j] / d[i]);
-    let mut schur = Schur::new(&complex_matrix(&scaled))?;
+    let mut schur = Schur::new(&to_complex_matrix(&scaled))?;
     if schur.reorder(|x| x.re < 0.0) != n {
         return Err(Error::NotConverged {
             what: "Riccati's equation, with eigenvalues on the imaginary axis,",
@@ -236,7 +236,7 @@ pub fn discrete_riccati(a: &DMatrix<f64>, b: &DMatrix<f64>, cost: &Cost) -> Resu
     check_stabilisable_modes(a, b, cost, |mode| mode.norm() >= 1.0, |mode| (mode.norm() - 1.0).abs())?;
     let [f, g, q] = cost.regulator_without_cross_terms(a, b)?;
     // The symplectic matrix loses digits if A is nearly singular, doubling if A is far from stable.
-    let ways = [solve_discrete_riccati(&f, &g, &q), doubling_limit(&f, &g, &q)];
+    let ways = [solve_by_symplectic_subspace(&f, &g, &q), doubling_limit(&f, &g, &q)];
     let mut best = Err(Error::NotConverged { what: "the discrete Riccati equation" });
     let mut least = f64::INFINITY;
     for x in ways.into_iter().flatten() {
@@ -290,7 +290,7 @@ fn doubling_limit(f: &DMatrix<f64>, g: &DMatrix<f64>, q: &DMatrix<f64>) -> Resul
 
 /// Computes the solution of a discrete Riccati equation from the invariant subspace of the symplectic matrix
 /// inside the unit circle (Laub, 1979).
-fn solve_discrete_riccati(
+fn solve_by_symplectic_subspace(
     f: &DMatrix<f64>,
     g: &DMatrix<f64>,
     q: &DMatrix<f64>,
@@ -305,7 +305,7 @@ fn solve_discrete_riccati(
     s.view_mut((n, n), (n, n)).copy_from(&inverse);
     let d = symplectic_scaling(&s);
     let scaled = DMatrix::from_fn(2 * n, 2 * n, |i, j| s[(i, j)] * d[j] / d[i]);
-    let mut schur = Schur::new(&complex_matrix(&scaled))?;
+    let mut schur = Schur::new(&to_complex_matrix(&scaled))?;
     if schur.reorder(|x| x.norm() < 1.0) != n {
         return Err(Error::NotConverged { what: "the discrete Riccati equation" });
     }

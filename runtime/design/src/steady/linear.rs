@@ -77,7 +77,7 @@ impl DependentEntryElimination {
     }
 
     /// Returns the indices of the independent entries, and the matrix that maps them to all entries.
-    fn independent_entries(&self) -> (Vec<usize>, DMatrix<f64>) {
+    fn independent_entries_and_map(&self) -> (Vec<usize>, DMatrix<f64>) {
         let columns = self.left.ncols();
         let free: Vec<usize> = (0..columns).filter(|j| self.pivots.iter().all(|(_, c)| c != j)).collect();
         let mut shape = DMatrix::zeros(columns, free.len());
@@ -89,7 +89,7 @@ impl DependentEntryElimination {
     }
 
     /// Returns the matrix that maps `y` to all entries of `x` for independent entries of zero.
-    fn particular_solution(&self) -> DMatrix<f64> {
+    fn particular_solution_matrix(&self) -> DMatrix<f64> {
         let mut all = DMatrix::zeros(self.left.ncols(), self.right.ncols());
         self.pivots.iter().for_each(|(row, column)| all.set_row(*column, &self.right.row(*row)));
         all
@@ -141,8 +141,8 @@ where
     let right = (-rates_by_q).resize(on_velocities.nrows(), NV, 0.0);
     let velocities = DependentEntryElimination::eliminate_dependent_entries(on_velocities, right);
     let ((coordinates, shape), (speeds, gamma)) =
-        (positions.independent_entries(), velocities.independent_entries());
-    let carried = velocities.particular_solution() * &shape;
+        (positions.independent_entries_and_map(), velocities.independent_entries_and_map());
+    let carried = velocities.particular_solution_matrix() * &shape;
     let drift = turning * &shape + &carried;
     let by_position = &by_q * &shape + &by_v * &carried;
     let by_speed = &by_v * &gamma;

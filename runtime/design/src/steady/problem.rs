@@ -36,7 +36,7 @@ pub fn dynamic_matrix<const R: usize, const C: usize>(m: &SMatrix<f64, R, C>) ->
     DMatrix::from_column_slice(R, C, m.as_slice())
 }
 
-fn dynamically_sized_vector<const N: usize>(x: &SVector<f64, N>) -> DVector<f64> {
+fn to_dynamically_sized_vector<const N: usize>(x: &SVector<f64, N>) -> DVector<f64> {
     DVector::from_column_slice(x.as_slice())
 }
 
@@ -69,15 +69,15 @@ where
             |h: f64| m.constraint_rates(t, &m.integrate(q, &unit_displacement(j, h)), v);
         rates_by_q.set_column(
             j,
-            &dynamically_sized_vector(
+            &to_dynamically_sized_vector(
                 &((constraint_rates_displaced(STEP) - constraint_rates_displaced(-STEP)) / (2.0 * STEP)),
             ),
         );
     }
     ConstraintResiduals {
         names: &const { M::CONSTRAINTS },
-        residuals: dynamically_sized_vector(&m.constraint_residuals(t, q)),
-        rates: dynamically_sized_vector(&m.constraint_rates(t, q, v)),
+        residuals: to_dynamically_sized_vector(&m.constraint_residuals(t, q)),
+        rates: to_dynamically_sized_vector(&m.constraint_rates(t, q, v)),
         jacobian: dynamic_matrix(&m.constraint_jacobian(t, q)),
         rates_by_q,
     }
@@ -97,7 +97,7 @@ where
     let by = m.output_derivatives(t, q, v, a, u);
     OutputSensitivities {
         names: M::OUTPUTS.to_vec(),
-        values: dynamically_sized_vector(&m.outputs(t, q, v, a, u)),
+        values: to_dynamically_sized_vector(&m.outputs(t, q, v, a, u)),
         by_q: dynamic_matrix(&by.by_q),
         by_v: dynamic_matrix(&by.by_v),
         by_a: dynamic_matrix(&by.by_a),
@@ -186,7 +186,7 @@ fn check_repeated_names(kind: &'static str, names: &[String]) -> Result<(), Erro
     twice.map_or(Ok(()), |(_, name)| Err(Error::Repeated { kind, name: name.clone() }))
 }
 
-fn collect_entry_names<T>(list: &[(String, T)]) -> Vec<String> {
+fn names_of_pairs<T>(list: &[(String, T)]) -> Vec<String> {
     list.iter().map(|(name, _)| name.clone()).collect()
 }
 
@@ -195,9 +195,9 @@ where
     M: Derivatives<NQ, NV, NU, Scalar = f64>,
 {
     pub fn new(trim: &'a Trim<'m, M, NQ, NV, NU>) -> Result<Self, Error> {
-        check_repeated_names("parameter", &collect_entry_names(&trim.parameters))?;
-        check_repeated_names("velocity", &collect_entry_names(&trim.accelerations))?;
-        check_repeated_names("output", &collect_entry_names(&trim.conditions))?;
+        check_repeated_names("parameter", &names_of_pairs(&trim.parameters))?;
+        check_repeated_names("velocity", &names_of_pairs(&trim.accelerations))?;
+        check_repeated_names("output", &names_of_pairs(&trim.conditions))?;
         let quantities: Vec<String> = trim.quantities.iter().map(|(name, ..)| name.clone()).collect();
         check_repeated_names("condition", &quantities)?;
         let held = indices_of_names("coordinate", &trim.held, &M::VELOCITIES)?;
@@ -319,7 +319,7 @@ where
             let by_u = by_force * force_by_u;
             // Accelerations without constraints. Zero if the unconstrained mass matrix is not positive
             // definite.
-            let push = dynamically_sized_vector(&(tau - Mechanism::bias_forces(m, t, q, v)));
+            let push = to_dynamically_sized_vector(&(tau - Mechanism::bias_forces(m, t, q, v)));
             let free = dynamic_matrix(&Mechanism::mass_matrix(m, t, q))
                 .cholesky()
                 .map_or(0.0, |c| c.solve(&push).amax());

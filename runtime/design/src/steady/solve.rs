@@ -263,8 +263,11 @@ where
     let svd = square.svd(false, true);
     let Some(directions) = svd.v_t else { return Vec::new() };
     let has_negligible_singular_value = |k: &usize| svd.singular_values[*k] <= SINGULAR;
-    let takes_part = |j: &usize| {
+    let takes_part_in_null_direction = |j: &usize| {
         (0..columns).filter(has_negligible_singular_value).any(|k| directions[(k, *j)].abs() > PART)
     };
-    (0..columns).filter(takes_part).map(|j| problem.name_of_unknown(problem.unknowns[j])).collect()
+    (0..columns)
+        .filter(takes_part_in_null_direction)
+        .map(|j| problem.name_of_unknown(problem.unknowns[j]))
+        .collect()
 }

@@ -62,14 +62,14 @@ pub unsafe extern "C" fn lw_simulate(
         let nonzero_setting = |x: f64| (x != 0.0).then_some(x);
         let method = Method::from_name(name, nonzero_setting(settings.setting))?;
         let control = settings.control.map(|control| raw::Controller { control, user: settings.user });
-        let mut controller = |t: f64, q: &[f64], v: &[f64], u: &mut [f64]| match &control {
+        let mut call_controller_if_given = |t: f64, q: &[f64], v: &[f64], u: &mut [f64]| match &control {
             Some(control) => control.call(t, q, v, u),
             None => Ok(()),
         };
         let inputs = match (&control, nonzero_setting(settings.period)) {
             (None, _) => Inputs::Zero,
-            (Some(_), None) => Inputs::Function(&mut controller),
-            (Some(_), Some(period)) => Inputs::Sampled(period, &mut controller),
+            (Some(_), None) => Inputs::Function(&mut call_controller_if_given),
+            (Some(_), Some(period)) => Inputs::Sampled(period, &mut call_controller_if_given),
         };
         let run = robot.simulate().start_at(settings.start).from(q, v).inputs(inputs).method(method);
         let run = run.duration(settings.duration);

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::Command;
 
-fn run_program(compiler: &str, file: &str) -> Result<(), Box<dyn std::error::Error>> {
+fn compile_and_run_program(compiler: &str, file: &str) -> Result<(), Box<dyn std::error::Error>> {
     if Command::new(compiler).arg("--version").output().is_err() {
         println!("skipped: there is no {compiler}");
         return Ok(());
@@ -32,10 +32,10 @@ fn run_program(compiler: &str, file: &str) -> Result<(), Box<dyn std::error::Err
 
 #[test]
 fn programs_in_c_run() -> Result<(), Box<dyn std::error::Error>> {
-    run_program("cc", "pendulum.c")
+    compile_and_run_program("cc", "pendulum.c")
 }
 
 #[test]
 fn programs_in_cpp_run() -> Result<(), Box<dyn std::error::Error>> {
-    run_program("c++", "pendulum.cpp")
+    compile_and_run_program("c++", "pendulum.cpp")
 }

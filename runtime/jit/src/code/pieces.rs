@@ -17,15 +17,15 @@ const WIDEST: usize = 4;
 /// are `Op::Lane(k, a)`, the lanes of `a` from lane `k` on, or copies of the first lane if `k` is zero; and
 /// `Op::Join(n, a, b)`, the first `n` lanes of `a`, followed by those of `b`. There is no `Op::Sum`. Outputs
 /// are first lanes.
-pub struct Pieces {
+pub struct ProgramInPieces {
     pub program: Program,
     /// Number of lanes of each value.
     pub widths: Vec<usize>,
 }
 
-impl Pieces {
+impl ProgramInPieces {
     /// Splits the values of a program. Inputs that are adjacent in memory are read together.
-    pub fn split_program(program: &Program, layout: &Layout) -> Result<Pieces, String> {
+    pub fn split_program(program: &Program, layout: &Layout) -> Result<ProgramInPieces, String> {
         let covered = Angles::find_angles(program).covered;
         let mut splitter = LaneSplitter {
             from: program,
@@ -42,11 +42,11 @@ impl Pieces {
         splitter.program.outputs =
             program.outputs.iter().map(|output| splitter.lane(*output, 0)).collect::<Result<_, _>>()?;
         let LaneSplitter { program, widths, .. } = splitter;
-        Ok(Pieces { program, widths }.without_unused_instructions())
+        Ok(ProgramInPieces { program, widths }.without_unused_instructions())
     }
 
     /// Removes unused instructions.
-    fn without_unused_instructions(mut self) -> Pieces {
+    fn without_unused_instructions(mut self) -> ProgramInPieces {
         let mut used = vec![false; self.widths.len()];
         let mark_used = |operand: Operand, used: &mut [bool]| {
             if let Operand::Value(k) = operand {
@@ -66,10 +66,10 @@ impl Pieces {
     }
 
     /// Reorders the instructions so that few values are live at once: see [`Program::with_few_live_values`].
-    pub fn with_few_live_values(self, arrays: &[usize]) -> Pieces {
+    pub fn with_few_live_values(self, arrays: &[usize]) -> ProgramInPieces {
         let order = self.program.order_with_few_live_values(arrays);
         let widths = order.iter().map(|k| self.widths[*k]).collect();
-        Pieces { program: self.program.reorder_instructions(&order), widths }
+        ProgramInPieces { program: self.program.reorder_instructions(&order), widths }
     }
 }
 
@@ -274,8 +274,9 @@ impl LaneSplitter<'_> {
     }
 
     fn constant_tuple(&mut self, list: Vec<f64>) -> Operand {
-        let bits = |list: &[f64]| list.iter().map(|c| c.to_bits()).collect::<Vec<_>>();
-        let known = self.program.tuples.iter().position(|known| bits(known) == bits(&list));
+        let bits_of_constants = |list: &[f64]| list.iter().map(|c| c.to_bits()).collect::<Vec<_>>();
+        let known =
+            self.program.tuples.iter().position(|known| bits_of_constants(known) == bits_of_constants(&list));
         Operand::Tuple(known.unwrap_or_else(|| {
             self.program.tuples.push(list);
             self.program.tuples.len() - 1
@@ -284,7 +285,7 @@ impl LaneSplitter<'_> {
 
     /// Returns inputs as lanes: they are read together if they are adjacent, and joined otherwise.
     fn load_inputs_as_lanes(&mut self, list: Vec<Symbol>) -> Operand {
-        let places: Vec<_> = list.iter().map(|symbol| self.layout.locate(*symbol)).collect();
+        let places: Vec<_> = list.iter().map(|symbol| self.layout.locate_symbol(*symbol)).collect();
         let is_adjacent_slot_pair = |pair: &[Option<(usize, usize)>]| match (pair[0], pair[1]) {
             (Some((slot, index)), Some((other, next))) => slot == other && next == index + 1,
             _ => false,

@@ -7,7 +7,7 @@
 mod angles;
 mod registers;
 
-use super::pieces::Pieces;
+use super::pieces::ProgramInPieces;
 use crate::layout::Layout;
 pub use angles::AngleGroup;
 use linkwork_compiler::expr::Function;
@@ -19,7 +19,7 @@ pub const WIDEST: usize = 4;
 
 /// Location of a number in memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Memory {
+pub enum MemoryLocation {
     /// Entry of an input: the index of the input, and the index of the entry in it.
     Input(usize, usize),
     /// Constant with this index.
@@ -38,7 +38,7 @@ pub enum Place {
     /// Register with this index, counted from zero.
     Register(u8),
     /// Location in memory.
-    Memory(Memory),
+    Memory(MemoryLocation),
 }
 
 #[cfg(any(test, target_arch = "aarch64"))]
@@ -46,7 +46,9 @@ impl Place {
     /// Returns the place of the number `k` places further on in memory.
     fn offset_place(self, k: usize) -> Place {
         match self {
-            Place::Memory(Memory::Input(slot, index)) => Place::Memory(Memory::Input(slot, index + k)),
+            Place::Memory(MemoryLocation::Input(slot, index)) => {
+                Place::Memory(MemoryLocation::Input(slot, index + k))
+            }
             other => other,
         }
     }
@@ -56,13 +58,13 @@ impl Place {
 #[derive(Clone, Copy, Debug)]
 pub enum Step {
     /// Loads numbers into the lanes of a register: register, memory, and number of lanes.
-    Load(u8, Memory, usize),
+    Load(u8, MemoryLocation, usize),
     /// Stores the first lanes of a register: register, memory, and number of lanes.
-    Store(u8, Memory, usize),
+    Store(u8, MemoryLocation, usize),
     /// Stores the second lane of a register.
-    StoreSecond(u8, Memory),
+    StoreSecond(u8, MemoryLocation),
     /// Copies numbers from memory to memory, with their count.
-    Copy(Memory, Memory, usize),
+    Copy(MemoryLocation, MemoryLocation, usize),
     /// Copies a constant to consecutive outputs: the constant, the first output, and their number.
     Fill(usize, usize, usize),
     /// An operation on places with its number of lanes. The result is in a register, also in that of an
@@ -82,7 +84,7 @@ pub fn is_call(op: &Op) -> bool {
 }
 
 /// Plan of a program: its steps, and the memory that they use.
-pub struct Allocation {
+pub struct ProgramPlan {
     pub steps: Vec<Step>,
     pub constants: Vec<f64>,
     /// Minimum length of each input of the program.
@@ -97,18 +99,23 @@ pub struct Allocation {
     pub work: usize,
 }
 
-impl Allocation {
+impl ProgramPlan {
     /// Plans a program whose first `results` outputs are its results, for a number of registers.
-    pub fn new(pieces: Pieces, layout: &Layout, results: usize, registers: u8) -> Result<Allocation, String> {
+    pub fn new(
+        pieces: ProgramInPieces,
+        layout: &Layout,
+        results: usize,
+        registers: u8,
+    ) -> Result<ProgramPlan, String> {
         // The results of derivatives are two matrices, whose corresponding entries share most values.
         let halves = [results / 2, results - results / 2];
-        let Pieces { program, widths } = &pieces.with_few_live_values(&halves);
+        let ProgramInPieces { program, widths } = &pieces.with_few_live_values(&halves);
         let n = program.instructions.len();
         let mut planner = Planner {
             program,
             widths,
             layout,
-            plan: Allocation {
+            plan: ProgramPlan {
                 steps: Vec::new(),
                 constants: Vec::new(),
                 lengths: vec![0; layout.len()],
@@ -143,7 +150,7 @@ struct Planner<'a> {
     /// Number of lanes of each value.
     widths: &'a [usize],
     layout: &'a Layout,
-    plan: Allocation,
+    plan: ProgramPlan,
     /// Indices of the constants, by the bits of their lanes.
     known: HashMap<Vec<u64>, usize>,
     /// Positions of sines and cosines that are computed together, and of their lanes.
@@ -160,18 +167,18 @@ struct Planner<'a> {
 
 /// Store of lanes of a value.
 #[derive(Clone, Copy)]
-enum Target {
+enum LaneStore {
     /// Stores the first lanes, with their number.
-    First(Memory, usize),
+    First(MemoryLocation, usize),
     /// Stores the second lane.
-    Second(Memory),
+    Second(MemoryLocation),
 }
 
 /// Register and location in memory of a value; at least one of them exists.
 #[derive(Clone, Copy, Default)]
 struct Residence {
     register: Option<u8>,
-    memory: Option<Memory>,
+    memory: Option<MemoryLocation>,
 }
 
 impl Planner<'_> {
@@ -186,9 +193,9 @@ impl Planner<'_> {
                 Operand::Value(at) if !self.sines.contains_key(&at) => {
                     let (at, target) = match program.instructions[at] {
                         Op::Lane(1, Operand::Value(whole)) if !is_operand[at] => {
-                            (whole, Target::Second(Memory::Output(k)))
+                            (whole, LaneStore::Second(MemoryLocation::Output(k)))
                         }
-                        _ => (at, Target::First(Memory::Output(k), 1)),
+                        _ => (at, LaneStore::First(MemoryLocation::Output(k), 1)),
                     };
                     stores[at].push(target);
                     live[at] = true;
@@ -206,8 +213,8 @@ impl Planner<'_> {
                     }
                 }
                 other => {
-                    let from = self.leaf(other)?;
-                    self.plan.steps.push(Step::Copy(from, Memory::Output(k), 1));
+                    let from = self.memory_of_leaf_operand(other)?;
+                    self.plan.steps.push(Step::Copy(from, MemoryLocation::Output(k), 1));
                 }
             }
         }
@@ -239,7 +246,7 @@ impl Planner<'_> {
     }
 
     /// Plans instructions and the stores of their values.
-    fn plan_instructions(&mut self, live: &[bool], stores: &[Vec<Target>]) -> Result<(), String> {
+    fn plan_instructions(&mut self, live: &[bool], stores: &[Vec<LaneStore>]) -> Result<(), String> {
         let n = self.program.instructions.len();
         self.places.fill(None);
         for k in (0..n).rev().filter(|k| live[*k]) {
@@ -269,16 +276,16 @@ impl Planner<'_> {
 }
 
 /// Joins the stores of a value's first and second lane in adjacent outputs.
-fn join_adjacent_stores(targets: &mut Vec<Target>, results: usize) {
+fn join_adjacent_stores(targets: &mut Vec<LaneStore>, results: usize) {
     let seconds: Vec<usize> = (targets.iter())
         .filter_map(|target| match target {
-            Target::Second(Memory::Output(k)) => Some(*k),
+            LaneStore::Second(MemoryLocation::Output(k)) => Some(*k),
             _ => None,
         })
         .collect();
     let mut joined = Vec::new();
     for target in targets.iter_mut() {
-        if let Target::First(Memory::Output(k), width @ 1) = target
+        if let LaneStore::First(MemoryLocation::Output(k), width @ 1) = target
             && *k + 1 != results
             && seconds.contains(&(*k + 1))
         {
@@ -286,5 +293,7 @@ fn join_adjacent_stores(targets: &mut Vec<Target>, results: usize) {
             joined.push(*k + 1);
         }
     }
-    targets.retain(|target| !matches!(target, Target::Second(Memory::Output(k)) if joined.contains(k)));
+    targets.retain(
+        |target| !matches!(target, LaneStore::Second(MemoryLocation::Output(k)) if joined.contains(k)),
+    );
 }

@@ -104,21 +104,23 @@ fn evaluate_all_values(
 ) -> Vec<f64> {
     let mut values: Vec<f64> = Vec::new();
     for (k, op) in program.instructions.iter().enumerate() {
-        let get = |operand| value(&values, operand);
+        let value_of_operand = |operand| value(&values, operand);
         let found = match *op {
-            Op::Neg(a) => -get(a),
-            Op::Add(a, b) => get(a) + get(b),
-            Op::Sub(a, b) => get(a) - get(b),
-            Op::Mul(a, b) => get(a) * get(b),
-            Op::Div(a, b) => get(a) / get(b),
-            Op::MulAdd(a, b, c) => get(a).mul_add(get(b), get(c)),
-            Op::MulSub(a, b, c) => get(a).mul_add(get(b), -get(c)),
-            Op::NegMulAdd(a, b, c) => (-get(a)).mul_add(get(b), get(c)),
-            Op::Call(f, a) => f.evaluate_at(get(a)),
-            Op::Atan2(a, b) => get(a).atan2(get(b)),
-            Op::Pow(a, b) => get(a).powf(get(b)),
-            Op::Extreme(f, a, b) => f.evaluate_extreme(get(a), get(b)),
-            Op::Table(_, a, ..) => table.value_or_derivative([get(a); 3], [1, 0, 0]),
+            Op::Neg(a) => -value_of_operand(a),
+            Op::Add(a, b) => value_of_operand(a) + value_of_operand(b),
+            Op::Sub(a, b) => value_of_operand(a) - value_of_operand(b),
+            Op::Mul(a, b) => value_of_operand(a) * value_of_operand(b),
+            Op::Div(a, b) => value_of_operand(a) / value_of_operand(b),
+            Op::MulAdd(a, b, c) => value_of_operand(a).mul_add(value_of_operand(b), value_of_operand(c)),
+            Op::MulSub(a, b, c) => value_of_operand(a).mul_add(value_of_operand(b), -value_of_operand(c)),
+            Op::NegMulAdd(a, b, c) => {
+                (-value_of_operand(a)).mul_add(value_of_operand(b), value_of_operand(c))
+            }
+            Op::Call(f, a) => f.evaluate_at(value_of_operand(a)),
+            Op::Atan2(a, b) => value_of_operand(a).atan2(value_of_operand(b)),
+            Op::Pow(a, b) => value_of_operand(a).powf(value_of_operand(b)),
+            Op::Extreme(f, a, b) => f.evaluate_extreme(value_of_operand(a), value_of_operand(b)),
+            Op::Table(_, a, ..) => table.value_or_derivative([value_of_operand(a); 3], [1, 0, 0]),
             Op::Sum(..) | Op::Lane(..) | Op::Join(..) => f64::NAN,
         };
         values.push(known.get(&k).copied().unwrap_or(found));
@@ -249,25 +251,25 @@ impl LaneProgramBuilder {
 
 /// Evaluates a program; sines and cosines are those of the functions that machine code calls.
 fn evaluate(program: &Program, layout: &Layout, inputs: &[&[f64]], table: &AnyTable) -> Vec<f64> {
-    let value = |values: &[f64], operand: Operand| match operand {
+    let value_of_operand = |values: &[f64], operand: Operand| match operand {
         Operand::Const(c) => c,
         Operand::Symbol(symbol) => {
-            layout.locate(symbol).map_or(f64::NAN, |(slot, index)| inputs[slot][index])
+            layout.locate_symbol(symbol).map_or(f64::NAN, |(slot, index)| inputs[slot][index])
         }
         Operand::Value(k) => values[k],
         Operand::Tuple(_) | Operand::Gather(_) => f64::NAN,
     };
-    let before = evaluate_all_values(program, &value, table, &HashMap::new());
+    let before = evaluate_all_values(program, &value_of_operand, table, &HashMap::new());
     let angles = Angles::find_angles(program);
     let mut known = HashMap::new();
     for (k, op) in program.instructions.iter().enumerate().filter(|(k, _)| angles.covered[*k]) {
         let Op::Call(f, operand) = *op else { continue };
-        let mut array = [value(&before, operand), 0.0, 0.0];
+        let mut array = [value_of_operand(&before, operand), 0.0, 0.0];
         write_sines_and_cosines(array.as_mut_ptr(), 1);
         known.insert(k, array[if f == Function::Sin { 1 } else { 2 }]);
     }
-    let all = evaluate_all_values(program, &value, table, &known);
-    program.outputs.iter().map(|output| value(&all, *output)).collect()
+    let all = evaluate_all_values(program, &value_of_operand, table, &known);
+    program.outputs.iter().map(|output| value_of_operand(&all, *output)).collect()
 }
 
 /// Compares machine code of random programs with their evaluation.

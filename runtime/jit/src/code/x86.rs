@@ -4,9 +4,9 @@ mod encoding;
 mod general;
 mod sines;
 
-use super::plan::{Allocation, Memory, Place, Step, is_call};
+use super::plan::{MemoryLocation, Place, ProgramPlan, Step, is_call};
 use encoding::*;
-use general::{CALLING, LEAF, Pointer, Registers};
+use general::{CALLING, GeneralRegisterRoles, InputAddressInRegister, LEAF};
 use linkwork_compiler::expr::{Extreme, Function as Elementary};
 use linkwork_compiler::lower::Op;
 
@@ -34,7 +34,7 @@ const ALIGNMENT: i32 = 32;
 const PAGE: i32 = 4096;
 
 /// Writes the code of a plan. Further constants are appended to those of the plan.
-pub fn write(plan: &mut Allocation, results: usize, helpers: HelperLookup) -> Result<Vec<u8>, String> {
+pub fn write(plan: &mut ProgramPlan, results: usize, helpers: HelperLookup) -> Result<Vec<u8>, String> {
     // Masks of the sign and of everything else, for whole registers.
     let masks = plan.constants.len().next_multiple_of(4);
     plan.constants.resize(masks, 0.0);
@@ -47,8 +47,8 @@ pub fn write(plan: &mut Allocation, results: usize, helpers: HelperLookup) -> Re
         return Err("a program is too long".to_string());
     }
     let plan = &*plan;
-    let calls = |step: &Step| matches!(step, Step::Operation(op, _, _, 1) if is_call(op));
-    let registers = if plan.steps.iter().any(calls) { CALLING } else { LEAF };
+    let calls_function = |step: &Step| matches!(step, Step::Operation(op, _, _, 1) if is_call(op));
+    let registers = if plan.steps.iter().any(calls_function) { CALLING } else { LEAF };
     let (code, pointers) = (Assembler::default(), Vec::new());
     let mut writer = Writer { code, plan, results, masks, helpers, registers, pointers, uses: 0, slow: None };
     let frame = writer.write_prologue()?;
@@ -60,24 +60,24 @@ pub fn write(plan: &mut Allocation, results: usize, helpers: HelperLookup) -> Re
 
 struct Writer<'a> {
     code: Assembler,
-    plan: &'a Allocation,
+    plan: &'a ProgramPlan,
     results: usize,
     /// Index of the sign masks among the constants.
     masks: usize,
     helpers: HelperLookup,
-    registers: Registers,
+    registers: GeneralRegisterRoles,
     /// Inputs whose addresses are in registers, in the order of [`Registers::pointers`].
-    pointers: Vec<Pointer>,
+    pointers: Vec<InputAddressInRegister>,
     /// Number of addresses of inputs that were used.
     uses: usize,
     /// Jump to the code for large angles, which follows that of the function.
-    slow: Option<sines::Jump>,
+    slow: Option<sines::LargeAngleJump>,
 }
 
 impl Writer<'_> {
     /// Writes the prologue of the function. Returns the size of its stack frame, bytes.
     fn write_prologue(&mut self) -> Result<i32, String> {
-        let Registers { constants, more, results, inputs, tables, saved, .. } = self.registers;
+        let GeneralRegisterRoles { constants, more, results, inputs, tables, saved, .. } = self.registers;
         saved.iter().for_each(|register| self.code.general(0x50, *register));
         let numbers = self.plan.work + 3 * self.plan.angle_count();
         // The saved registers and the address of the caller: with them the stack is aligned to 16 bytes. The
@@ -86,10 +86,10 @@ impl Writer<'_> {
         let frame = i32::try_from((8 * numbers).next_multiple_of(16) + ALIGNMENT as usize + odd);
         let frame = frame.ok().filter(|frame| *frame < 1 << 20).ok_or("a program has too many values")?;
         for _ in 0..frame / PAGE {
-            self.code.add_to_stack(-PAGE);
+            self.code.add_to_stack_pointer(-PAGE);
             self.code.bytes.extend([0x89, 0x04, 0x24]); // mov [rsp], eax
         }
-        self.code.add_to_stack(-(frame % PAGE));
+        self.code.add_to_stack_pointer(-(frame % PAGE));
         self.code.write_effective_address_load(FRAME, RSP, BIAS + ALIGNMENT - 1);
         self.code.bytes.extend([0x48, 0x83, 0xE5, -ALIGNMENT as i8 as u8]); // and rbp, -32
         self.code.write_effective_address_load(constants, RSI, BIAS);
@@ -103,7 +103,7 @@ impl Writer<'_> {
 
     fn write_epilogue(&mut self, frame: i32) {
         self.code.write_vzeroupper();
-        self.code.add_to_stack(frame);
+        self.code.add_to_stack_pointer(frame);
         self.registers.saved.iter().rev().for_each(|register| self.code.general(0x58, *register));
         self.code.bytes.push(0xC3);
     }
@@ -304,7 +304,7 @@ impl Writer<'_> {
         };
         self.pointers.clear();
         // The registers of the arguments hold no addresses.
-        self.pointers.extend([(); 5].map(|()| Pointer { slot: usize::MAX, last: usize::MAX }));
+        self.pointers.extend([(); 5].map(|()| InputAddressInRegister { slot: usize::MAX, last: usize::MAX }));
         for (register, place) in (0..).zip(&places[..count]) {
             let from = self.operand(*place);
             self.code.load(register, from, 1);
@@ -329,12 +329,12 @@ impl Writer<'_> {
     fn store_constant_repeatedly(&mut self, constant_: usize, first: usize, count: usize) {
         let long = count >= 4;
         let code = if long { BROADCAST } else { LOAD };
-        let from = self.memory(Memory::Constant(constant_));
+        let from = self.memory(MemoryLocation::Constant(constant_));
         self.code.instruction(code, SCRATCH, 0, from);
         let mut at = first;
         while at < first + count {
             let rest = first + count - at;
-            let to = self.memory(Memory::Output(at));
+            let to = self.memory(MemoryLocation::Output(at));
             let code = if rest >= 4 { STORE_FOUR } else { STORE };
             self.code.instruction(code, SCRATCH, 0, to);
             at += if rest >= 4 { 4 } else { 1 };
@@ -351,19 +351,23 @@ impl Writer<'_> {
 
     /// Returns the address operand of a number in memory; loads the address of an input that is in no
     /// register.
-    fn memory(&mut self, memory: Memory) -> Rm {
-        let offset = |index: usize| 8 * index as i32;
+    fn memory(&mut self, memory: MemoryLocation) -> Rm {
+        let byte_offset = |index: usize| 8 * index as i32;
         match memory {
-            Memory::Constant(k) => self.constant(k),
-            Memory::Work(k) => Rm::Memory(FRAME, offset(k) - BIAS),
-            Memory::Angle(k) => Rm::Memory(FRAME, offset(self.plan.work + k) - BIAS),
-            Memory::Output(k) if k < self.results => Rm::Memory(self.registers.results, offset(k)),
-            Memory::Output(k) => Rm::Memory(self.registers.more, offset(k - self.results)),
-            Memory::Input(slot, index) => Rm::Memory(self.pointer(slot), offset(index)),
+            MemoryLocation::Constant(k) => self.constant(k),
+            MemoryLocation::Work(k) => Rm::Memory(FRAME, byte_offset(k) - BIAS),
+            MemoryLocation::Angle(k) => Rm::Memory(FRAME, byte_offset(self.plan.work + k) - BIAS),
+            MemoryLocation::Output(k) if k < self.results => {
+                Rm::Memory(self.registers.results, byte_offset(k))
+            }
+            MemoryLocation::Output(k) => Rm::Memory(self.registers.more, byte_offset(k - self.results)),
+            MemoryLocation::Input(slot, index) => {
+                Rm::Memory(self.register_with_input_address(slot), byte_offset(index))
+            }
         }
     }
 
-    fn store(&mut self, from: u8, to: Memory, width: usize) {
+    fn store(&mut self, from: u8, to: MemoryLocation, width: usize) {
         let to = self.memory(to);
         self.code.instruction(encoding_on_lanes(STORE, width), from, 0, to);
     }

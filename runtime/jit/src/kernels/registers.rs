@@ -21,17 +21,17 @@ pub fn multiply<const K: usize>(
     for (matrix, groups) in matrices.into_iter().zip(columns) {
         for group in groups {
             match group.columns.len() {
-                1 => subtract_product_from_columns::<1>(n, square, matrix, group, work),
-                2 => subtract_product_from_columns::<2>(n, square, matrix, group, work),
-                3 => subtract_product_from_columns::<3>(n, square, matrix, group, work),
-                _ => subtract_product_from_columns::<4>(n, square, matrix, group, work),
+                1 => replace_group_by_negative_products::<1>(n, square, matrix, group, work),
+                2 => replace_group_by_negative_products::<2>(n, square, matrix, group, work),
+                3 => replace_group_by_negative_products::<3>(n, square, matrix, group, work),
+                _ => replace_group_by_negative_products::<4>(n, square, matrix, group, work),
             }
         }
     }
 }
 
 #[target_feature(enable = "avx512f")]
-fn subtract_product_from_columns<const M: usize>(
+fn replace_group_by_negative_products<const M: usize>(
     n: usize,
     square: &[f64],
     matrix: &mut [f64],
@@ -46,16 +46,16 @@ fn subtract_product_from_columns<const M: usize>(
     }
     for first in (0..n).step_by(MOST * ROWS) {
         match (n - first).div_ceil(ROWS) {
-            1 => multiply_rows::<M, 1>([n, first], square, matrix, group, factors),
-            2 => multiply_rows::<M, 2>([n, first], square, matrix, group, factors),
-            _ => multiply_rows::<M, MOST>([n, first], square, matrix, group, factors),
+            1 => compute_product_rows::<M, 1>([n, first], square, matrix, group, factors),
+            2 => compute_product_rows::<M, 2>([n, first], square, matrix, group, factors),
+            _ => compute_product_rows::<M, MOST>([n, first], square, matrix, group, factors),
         }
     }
 }
 
 /// Computes the rows from `first` on, at most those of `R` registers.
 #[target_feature(enable = "avx512f")]
-fn multiply_rows<const M: usize, const R: usize>(
+fn compute_product_rows<const M: usize, const R: usize>(
     [n, first]: [usize; 2],
     square: &[f64],
     matrix: &mut [f64],

@@ -13,7 +13,7 @@ use linkwork::{Constrained, ConstraintError};
 use std::borrow::Borrow;
 
 /// Accelerations, or changes of velocities, together with constraint multipliers.
-pub(super) type Solution<const NV: usize> = (SVector<f64, NV>, SVector<f64, NV>);
+pub(super) type AccelerationsAndMultipliers<const NV: usize> = (SVector<f64, NV>, SVector<f64, NV>);
 
 /// Row index that marks a sliding contact as padding.
 const NO_ROW: usize = usize::MAX;
@@ -127,7 +127,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         independent: bool,
         state: State<'_>,
         more: &SVector<f64, NV>,
-    ) -> Option<Solution<NV>> {
+    ) -> Option<AccelerationsAndMultipliers<NV>> {
         let constraints = &self.robot().shared.constraints;
         if constraints.overdetermined {
             return least_solution(
@@ -151,11 +151,11 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         q: &SVector<f64, NQ>,
         v: &SVector<f64, NV>,
         tau: &SVector<f64, NV>,
-    ) -> Result<Solution<NV>, ConstraintError> {
+    ) -> Result<AccelerationsAndMultipliers<NV>, ConstraintError> {
         let slipping = self.robot().shared.constraints.slipping.len();
         let state = State { tau: self.velocity_entries(tau), ..self.state_with_velocity(t, q, v) };
         let mut more = *tau;
-        self.add_first_order_state_rates(state, 1.0, &mut more);
+        self.add_state_rates_without_inputs(state, 1.0, &mut more);
         let names = Self::CONSTRAINTS;
         slipping_solution(&self.sliding_rows(), &self.constraint_groups(), &names, |sides: &[f64; NV]| {
             let state = State { other: &[&sides[..slipping]], ..state };
@@ -165,7 +165,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
 
     /// Returns the changes of velocities for generalized forces and constraint biases. Entries of the padding
     /// are those of the forces.
-    pub(super) fn constraint_solution(
+    pub(super) fn constrained_velocity_changes(
         &self,
         t: f64,
         q: &SVector<f64, NQ>,
@@ -232,7 +232,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Constr
 
     fn constraint_jacobian(&self, t: f64, q: &SVector<f64, NQ>) -> SMatrix<f64, NV, NV> {
         let size = (self.constraint_count(), self.robot().nv());
-        self.fill_matrix(
+        self.matrix_with_results(
             InternalFunction::ConstraintJacobian,
             self.state_without_velocity(t, q),
             size,
@@ -255,7 +255,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Constr
         q: &SVector<f64, NQ>,
         v: &SVector<f64, NV>,
         tau: &SVector<f64, NV>,
-    ) -> Solution<NV> {
+    ) -> AccelerationsAndMultipliers<NV> {
         let constraints = &self.robot().shared.constraints;
         if !constraints.slipping.is_empty() {
             let undetermined = SVector::repeat(f64::NAN);
@@ -264,7 +264,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Constr
         }
         let state = State { tau: self.velocity_entries(tau), ..self.state_with_velocity(t, q, v) };
         let mut more = *tau;
-        self.add_first_order_state_rates(state, 1.0, &mut more);
+        self.add_state_rates_without_inputs(state, 1.0, &mut more);
         self.accelerations_by_elimination(
             InternalFunction::ConstrainedDynamics,
             constraints.independent,
@@ -289,7 +289,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Constr
         q: &SVector<f64, NQ>,
         gap: &SVector<f64, NV>,
     ) -> SVector<f64, NV> {
-        self.constraint_solution(t, q, &[0.0; NV], &gap.data.0[0])
+        self.constrained_velocity_changes(t, q, &[0.0; NV], &gap.data.0[0])
     }
 
     fn constraint_response(
@@ -299,6 +299,6 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Constr
         p: &SVector<f64, NV>,
         gap: &SVector<f64, NV>,
     ) -> SVector<f64, NV> {
-        self.constraint_solution(t, q, &p.data.0[0], &gap.data.0[0])
+        self.constrained_velocity_changes(t, q, &p.data.0[0], &gap.data.0[0])
     }
 }

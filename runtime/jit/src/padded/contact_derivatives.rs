@@ -64,12 +64,12 @@ impl<const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const N
         let (forces, accelerations) = found.split_at(n * n);
         let mut forces_by_q = Square::zeros();
         write_block(&mut forces_by_q, n, forces);
-        let block_of_rates = |k: usize| {
+        let padded_contact_matrix = |k: usize| {
             let mut all = SMatrix::<f64, NR, NV>::zeros();
             write_block(&mut all, rows, &accelerations[k * n * rows..(k + 1) * n * rows]);
             all
         };
-        let [accelerations_by_q, accelerations_by_v, rates_by_q] = [0, 1, 2].map(block_of_rates);
+        let [accelerations_by_q, accelerations_by_v, rates_by_q] = [0, 1, 2].map(padded_contact_matrix);
         FirstOrder { forces_by_q, accelerations_by_q, accelerations_by_v, rates_by_q }
     }
 }

@@ -181,7 +181,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const N
 
     fn contact_jacobian(&self, t: f64, q: &Vector<NQ>) -> SMatrix<f64, NR, NV> {
         let size = (self.contact_rate_count(), self.robot().nv());
-        self.plain.fill_matrix(
+        self.plain.matrix_with_results(
             InternalFunction::ContactJacobian,
             self.plain.state_without_velocity(t, q),
             size,

@@ -66,7 +66,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
 
     /// Returns the derivatives of the displaced configuration `q ⊕ dv` for velocities that are joint
     /// velocities.
-    fn plain_integrate_derivatives(&self, dv: &SVector<f64, NV>) -> (Square<NV>, Square<NV>) {
+    fn joint_velocity_integrate_derivatives(&self, dv: &SVector<f64, NV>) -> (Square<NV>, Square<NV>) {
         let (mut first, mut second) = (Square::identity(), Square::identity());
         for chart in &self.robot().shared.charts {
             match *chart {
@@ -136,14 +136,14 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
     pub(crate) fn speed_matrix(&self, f: InternalFunction, q: &SVector<f64, NQ>) -> Square<NV> {
         let n = self.robot().nv();
         let state = State { q: self.configuration_entries(q), ..State::default() };
-        self.fill_matrix(f, state, (n, n), Square::identity())
+        self.matrix_with_results(f, state, (n, n), Square::identity())
     }
 
-    fn rate_changes(&self, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> Square<NV> {
+    fn velocity_configuration_derivatives(&self, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> Square<NV> {
         let n = self.robot().nv();
         let state =
             State { q: self.configuration_entries(q), v: self.velocity_entries(v), ..State::default() };
-        self.fill_matrix(InternalFunction::RateChanges, state, (n, n), Square::zeros())
+        self.matrix_with_results(InternalFunction::RateChanges, state, (n, n), Square::zeros())
     }
 
     /// Returns the displacement `dv` in joint velocities, and the displaced configuration.
@@ -204,7 +204,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         let constraints = &self.robot().shared.constraints;
         if constraints.slipping.is_empty() {
             return constrained_derivatives(&parts, |force, bias| {
-                self.constraint_solution(t, q, force, bias)
+                self.constrained_velocity_changes(t, q, force, bias)
             });
         }
         let (slipping, groups) = (self.sliding_rows(), self.constraint_groups());
@@ -228,7 +228,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Deriva
     fn integrate_derivatives(&self, dv: &SVector<f64, NV>) -> (Square<NV>, Square<NV>) {
         match self.has_speeds() {
             true => (Square::repeat(f64::NAN), Square::repeat(f64::NAN)),
-            false => self.plain_integrate_derivatives(dv),
+            false => self.joint_velocity_integrate_derivatives(dv),
         }
     }
 
@@ -249,14 +249,14 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Deriva
         dv: &SVector<f64, NV>,
     ) -> (Square<NV>, Square<NV>) {
         if !self.has_speeds() {
-            return self.plain_integrate_derivatives(dv);
+            return self.joint_velocity_integrate_derivatives(dv);
         }
         let (way, there) = self.displacement_and_new_configuration(q, dv);
         integrate_derivatives_in_speeds(
             &self.speed_matrix(InternalFunction::RateMatrix, q),
             &self.speed_matrix(InternalFunction::SpeedMatrix, &there),
-            &self.plain_integrate_derivatives(&way),
-            &self.rate_changes(q, dv),
+            &self.joint_velocity_integrate_derivatives(&way),
+            &self.velocity_configuration_derivatives(q, dv),
         )
     }
 
@@ -281,7 +281,11 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Deriva
             ],
             &self.joint_velocity_rate_derivatives(&way, &rates),
             &self.integrate_derivatives_at(q, dv),
-            [&self.rate_changes(q, dv), &self.rate_changes(q, &found), &self.rate_changes(&there, v)],
+            [
+                &self.velocity_configuration_derivatives(q, dv),
+                &self.velocity_configuration_derivatives(q, &found),
+                &self.velocity_configuration_derivatives(&there, v),
+            ],
         )
     }
 
@@ -294,7 +298,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Deriva
                     v: self.velocity_entries(v),
                     ..State::default()
                 };
-                self.fill_matrix(InternalFunction::Turning, state, (n, n), Square::zeros())
+                self.matrix_with_results(InternalFunction::Turning, state, (n, n), Square::zeros())
             }
             false => self.joint_velocity_rate_derivatives(&SVector::zeros(), v).0 * 2.0,
         }
@@ -302,7 +306,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Deriva
 
     fn coriolis_matrix(&self, t: f64, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> Square<NV> {
         let n = self.robot().nv();
-        self.fill_matrix(
+        self.matrix_with_results(
             InternalFunction::CoriolisMatrix,
             self.state_with_velocity(t, q, v),
             (n, n),
@@ -372,7 +376,12 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Deriva
     ) -> Square<NV> {
         let n = self.robot().nv();
         let state = self.state_with_velocity(t, q, v);
-        self.fill_matrix(InternalFunction::GeneralizedMomentumDerivatives, state, (n, n), Square::zeros())
+        self.matrix_with_results(
+            InternalFunction::GeneralizedMomentumDerivatives,
+            state,
+            (n, n),
+            Square::zeros(),
+        )
     }
 
     fn momentum_rate_derivatives(

@@ -16,7 +16,7 @@ use std::cell::{Cell, RefCell};
 
 /// Inputs of a simulation that do not depend on the state.
 #[derive(Clone, Copy)]
-pub(super) enum InputSource<'a> {
+pub(super) enum StateIndependentInputs<'a> {
     Zero,
     Constant(&'a [f64]),
     Samples(&'a [f64], &'a [f64]),
@@ -31,7 +31,7 @@ pub(super) struct Settings<'a> {
     pub(super) end: f64,
     pub(super) every: Option<f64>,
     pub(super) overlaps: Overlaps,
-    pub(super) inputs: InputSource<'a>,
+    pub(super) inputs: StateIndependentInputs<'a>,
 }
 
 /// Driver of a simulation run: settings, controller, and receiver of the samples.
@@ -46,13 +46,13 @@ pub(super) struct Driver<'a, 'i, 's> {
 }
 
 /// Simulation run with its initial state, to be started on a padded robot.
-pub(super) struct Moving<'d, 'a, 'i, 's> {
+pub(super) struct SimulationVisitor<'d, 'a, 'i, 's> {
     pub(super) driver: &'d mut Driver<'a, 'i, 's>,
     pub(super) q: &'d [f64],
     pub(super) v: &'d [f64],
 }
 
-impl Visitor for Moving<'_, '_, '_, '_> {
+impl Visitor for SimulationVisitor<'_, '_, '_, '_> {
     type Output = Result<(), Error>;
 
     fn visit<const N: usize>(self, robot: &Padded<N, N, N, &Robot>) -> Self::Output {
@@ -86,7 +86,7 @@ impl Visitor for Moving<'_, '_, '_, '_> {
     }
 }
 
-impl ContactVisitor for Moving<'_, '_, '_, '_> {
+impl ContactVisitor for SimulationVisitor<'_, '_, '_, '_> {
     type Output = Result<(), Error>;
 
     fn visit<M: Mechanism<N, N, N, Scalar = f64>, const N: usize>(self, robot: &M) -> Self::Output {
@@ -143,9 +143,9 @@ impl Settings<'_> {
         let row =
             |values: &[f64], k: usize| SVector::from_fn(|i, _| if i < n { values[k * n + i] } else { 0.0 });
         match self.inputs {
-            InputSource::Zero => SVector::zeros(),
-            InputSource::Constant(u) => row(u, 0),
-            InputSource::Samples(times, values) => {
+            StateIndependentInputs::Zero => SVector::zeros(),
+            StateIndependentInputs::Constant(u) => row(u, 0),
+            StateIndependentInputs::Samples(times, values) => {
                 let after = match is_before {
                     true => times.partition_point(|known| *known < t),
                     false => times.partition_point(|known| *known <= t),
@@ -166,7 +166,7 @@ impl Settings<'_> {
     /// simulation.
     fn section_ends(&self) -> Vec<f64> {
         let mut stops = match self.inputs {
-            InputSource::Samples(times, _) => times.to_vec(),
+            StateIndependentInputs::Samples(times, _) => times.to_vec(),
             _ => Vec::new(),
         };
         stops.retain(|t| *t > self.start && *t < self.end);
@@ -186,7 +186,7 @@ impl Settings<'_> {
     fn sample_of_state<const N: usize>(&self, state: &PaddedState<N>, u: &SVector<f64, N>) -> Sample {
         let (robot, t) = (self.robot, state.t);
         let u = match self.inputs {
-            InputSource::Samples(..) => self.inputs_at_time(t, false),
+            StateIndependentInputs::Samples(..) => self.inputs_at_time(t, false),
             _ => *u,
         };
         let leading_entries = |x: &SVector<f64, N>, count: usize| x.as_slice()[..count].to_vec();

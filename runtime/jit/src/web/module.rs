@@ -278,7 +278,8 @@ impl FunctionBodyWriter<'_> {
     }
 
     fn write_load_of_symbol(&mut self, symbol: Symbol) -> Result<(), String> {
-        let (slot, index) = self.layout.locate(symbol).ok_or("a program reads what it is not given")?;
+        let (slot, index) =
+            self.layout.locate_symbol(symbol).ok_or("a program reads what it is not given")?;
         self.code.push(GET);
         write_unsigned(&mut self.code, slot);
         self.code.extend([LOAD, 3]);

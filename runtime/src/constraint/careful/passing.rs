@@ -71,7 +71,7 @@ where
         safe_distance_from_singularity::<T>() * constant(0.4),
         well_conditioned_threshold::<T>() * constant(0.5),
     );
-    let acceleration_past_singularity = |way: &AssemblyModePath<T, NQ, NV>, parts: &[f64], clear: T| {
+    let permitted_accelerations_from_path = |way: &AssemblyModePath<T, NQ, NV>, parts: &[f64], clear: T| {
         let pace = safe_distance_from_singularity::<T>() / largest_magnitude(&way.heading);
         let goes = pace > T::zero() && pace.is_finite();
         let steps = parts.iter().filter(|_| goes).map(|part| pace * constant(*part));
@@ -80,24 +80,24 @@ where
         })
     };
     // Other paths and step lengths are tried if the interpolation fails on the first ones.
-    acceleration_past_singularity(&way, &[1.0, 2.0], clear)
+    permitted_accelerations_from_path(&way, &[1.0, 2.0], clear)
         .or_else(|| {
-            acceleration_past_singularity(
+            permitted_accelerations_from_path(
                 &way.path_of_slow_departure(mechanism, structure)?,
                 &[1.0, 2.0, 4.0, 8.0, 0.5],
                 clear,
             )
         })
         .or_else(|| {
-            acceleration_past_singularity(
+            permitted_accelerations_from_path(
                 &way.path_of_slow_departure(mechanism, structure)?.orthogonalised_path(&way),
                 &[1.0, 2.0, 4.0, 8.0, 0.5],
                 clear,
             )
         })
-        .or_else(|| acceleration_past_singularity(&way, &[4.0, 16.0], clear))
-        .or_else(|| acceleration_past_singularity(&way, &[1.0, 0.5, 0.25], within))?
-        .permitted_acceleration(structure, system)
+        .or_else(|| permitted_accelerations_from_path(&way, &[4.0, 16.0], clear))
+        .or_else(|| permitted_accelerations_from_path(&way, &[1.0, 0.5, 0.25], within))?
+        .acceleration_by_gauss_principle(structure, system)
 }
 
 impl<T: Real, const NQ: usize, const NV: usize> AssemblyModePath<T, NQ, NV> {
@@ -301,7 +301,7 @@ struct PermittedAccelerations<T, const NV: usize> {
 impl<T: Real, const NV: usize> PermittedAccelerations<T, NV> {
     /// Returns the permitted acceleration that follows from masses and forces (Gauss's principle). Rows that
     /// span the complement of the permitted accelerations are treated as constraints.
-    fn permitted_acceleration<const NC: usize>(
+    fn acceleration_by_gauss_principle<const NC: usize>(
         &self,
         structure: &Structure<'_, NC>,
         system: &DynamicsEquations<T, NV, NC>,

@@ -45,19 +45,20 @@ pub(super) struct SeparationBounds<T> {
 
 impl<T: Real> SeparationBounds<T> {
     /// Returns the bounds that the mean positions of the vertices give.
-    pub(super) fn of_centers(first: &Placed<'_, T>, second: &Placed<'_, T>) -> Self {
+    pub(super) fn bounds_from_centers(first: &Placed<'_, T>, second: &Placed<'_, T>) -> Self {
         SeparationBounds { between: Some(second.center() - first.center()) }
     }
 
     /// Whether the separation along an outward normal of the first polytope may exceed a known separation.
-    fn may_exceed(&self, normal: &Vector3<T>, is_second: bool, known: T) -> bool {
+    fn may_face_separation_exceed(&self, normal: &Vector3<T>, is_second: bool, known: T) -> bool {
         let side = if is_second { -T::one() } else { T::one() };
-        self.between.is_none_or(|between| normal.dot(&between) * side > known - slack_of(&between))
+        self.between
+            .is_none_or(|between| normal.dot(&between) * side > known - rounding_slack_of_bound(&between))
     }
 
     /// Whether the separation along a common normal of an edge and another edge may exceed a known
     /// separation: along some direction between the normals at the edge.
-    fn may_edge_exceed(
+    fn may_edge_separation_exceed(
         &self,
         normals: Option<[Vector3<T>; 2]>,
         along: &Vector3<T>,
@@ -66,7 +67,7 @@ impl<T: Real> SeparationBounds<T> {
     ) -> bool {
         let Some(between) = self.between else { return true };
         let between = if is_second { -between } else { between };
-        let known = known - slack_of(&between);
+        let known = known - rounding_slack_of_bound(&between);
         let across = between - along * along.dot(&between);
         if across.norm_squared() <= known * known && known > T::zero() {
             return false;
@@ -78,7 +79,7 @@ impl<T: Real> SeparationBounds<T> {
     }
 }
 
-fn slack_of<T: Real>(between: &Vector3<T>) -> T {
+fn rounding_slack_of_bound<T: Real>(between: &Vector3<T>) -> T {
     between.norm() * constant(SLACK)
 }
 
@@ -117,10 +118,10 @@ fn best_separating_face<T: Real>(
     let mut best: Option<(T, usize)> = None;
     for k in 0..own.face_count() {
         let (normal, offset) = (own.normal(k), own.offset(k));
-        if best.is_some_and(|(known, _)| !bounds.may_exceed(&normal, is_second, known)) {
+        if best.is_some_and(|(known, _)| !bounds.may_face_separation_exceed(&normal, is_second, known)) {
             continue;
         }
-        let distance = other.lowest(&normal) - offset;
+        let distance = other.lowest_height_along_normal(&normal) - offset;
         if best.is_none_or(|(known, _)| distance > known + tolerance) {
             best = Some((distance, k));
         }
@@ -140,16 +141,17 @@ pub(super) fn best_edge_axis<T: Real>(
     let mut candidates = [false; MAX_EDGES];
     let others = second.shape.edges.iter().zip(&second.directions);
     for (candidate, (edge, along)) in candidates.iter_mut().zip(others.clone()) {
-        *candidate = bounds.may_edge_exceed(adjacent_normals(second, edge.faces), along, true, face);
+        *candidate =
+            bounds.may_edge_separation_exceed(adjacent_normals(second, edge.faces), along, true, face);
     }
     for (i, (edge, own)) in first.shape.edges.iter().zip(&first.directions).enumerate() {
         let (start, normals) = (first.vertex(edge.ends[0]), adjacent_normals(first, edge.faces));
-        if !bounds.may_edge_exceed(normals, own, false, face) {
+        if !bounds.may_edge_separation_exceed(normals, own, false, face) {
             continue;
         }
         for (j, (candidate, (other_edge, along))) in candidates.iter().zip(others.clone()).enumerate() {
             let other_normals = adjacent_normals(second, other_edge.faces);
-            if !candidate || !do_arcs_cross((normals, own), (other_normals, along)) {
+            if !candidate || !do_gauss_arcs_cross((normals, own), (other_normals, along)) {
                 continue;
             }
             let across = own.cross(along);
@@ -184,18 +186,19 @@ fn adjacent_normals<T: Real>(shape: &Placed<'_, T>, faces: [u8; 2]) -> Option<[V
 /// Whether a common normal of two edges is an outward normal of one polytope, and an inward normal of the
 /// other: on the Gauss sphere, the arc between the normals at one edge crosses the negative of the arc at the
 /// other. The arc of a line segment is a great circle.
-fn do_arcs_cross<T: Real>(
+fn do_gauss_arcs_cross<T: Real>(
     (normals, own): (Option<[Vector3<T>; 2]>, &Vector3<T>),
     (others, along): (Option<[Vector3<T>; 2]>, &Vector3<T>),
 ) -> bool {
-    let sides_of = |normals: Option<[Vector3<T>; 2]>, edge: &Vector3<T>| {
+    let normal_components_along_edge = |normals: Option<[Vector3<T>; 2]>, edge: &Vector3<T>| {
         normals.map(|normals| normals.map(|normal| normal.dot(edge)))
     };
-    let (of_others, of_own) = (sides_of(others, own), sides_of(normals, along));
-    let differ = |sides: Option<[T; 2]>| sides.is_none_or(|[a, b]| a * b < T::zero());
+    let (of_others, of_own) =
+        (normal_components_along_edge(others, own), normal_components_along_edge(normals, along));
+    let have_opposite_signs = |sides: Option<[T; 2]>| sides.is_none_or(|[a, b]| a * b < T::zero());
     let same_half = match (of_others, of_own) {
         (Some([a, _]), Some([_, b])) => a * b < T::zero(),
         _ => true,
     };
-    differ(of_others) && differ(of_own) && same_half
+    have_opposite_signs(of_others) && have_opposite_signs(of_own) && same_half
 }

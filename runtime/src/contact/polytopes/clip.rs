@@ -1,7 +1,7 @@
 //! Clipping of a face, or of a line segment, by the sides of a face.
 
 use super::axes::FaceAxis;
-use super::{MAX_VERTICES, Placed, Polytope, constant, vertex_of};
+use super::{MAX_VERTICES, Placed, Polytope, constant, vertex_position_in_body};
 use crate::Real;
 use nalgebra::Vector3;
 
@@ -82,18 +82,18 @@ pub(super) fn side_plane<T: Real>(
     normal: &Vector3<T>,
 ) -> (Vector3<T>, T) {
     let corners = shape.faces.get(face).map_or(&[][..], |face| face.corners);
-    let corner = |k: usize| {
+    let corner_of_face = |k: usize| {
         let index = if k == corners.len() { 0 } else { k };
-        corners.get(index).map_or_else(Vector3::zeros, |k| vertex_of::<T>(shape, *k))
+        corners.get(index).map_or_else(Vector3::zeros, |k| vertex_position_in_body::<T>(shape, *k))
     };
-    let (start, end) = (corner(side), corner(side + 1));
+    let (start, end) = (corner_of_face(side), corner_of_face(side + 1));
     let outward = (end - start).cross(normal).normalize();
     (outward, outward.dot(&start))
 }
 
 /// Writes the points of the other polytope within the sides of a face, and returns their number and the index
 /// of the face that was clipped; `None` for a line segment.
-pub(super) fn clipped_points<T: Real>(
+pub(super) fn write_clipped_points<T: Real>(
     own: &Placed<'_, T>,
     other: &Placed<'_, T>,
     axis: &FaceAxis<T>,
@@ -188,8 +188,8 @@ fn clip_polygon<T: Real>(
 /// Returns the vertex between two sides of a face; each side begins at the vertex with its index.
 fn corner_between(corners: &[u8], a: usize, b: usize) -> u8 {
     let last = corners.len().saturating_sub(1);
-    let is_before = |a: usize, b: usize| a + 1 == b || (a == last && b == 0);
-    let index = if is_before(a, b) { b } else { a };
+    let is_preceding_side = |a: usize, b: usize| a + 1 == b || (a == last && b == 0);
+    let index = if is_preceding_side(a, b) { b } else { a };
     corners.get(index).copied().unwrap_or(0)
 }
 
@@ -203,15 +203,15 @@ fn clip_segment<T: Real>(polygon: &Polygon<T>, (outward, limit): (Vector3<T>, T)
         return clipped;
     }
     let place = start.place + (end.place - start.place) * (here / (here - there));
-    let cut = |point: &ClippedPoint<T>| {
+    let point_cut_by_plane = |point: &ClippedPoint<T>| {
         let origin = match point.next {
             Line::Edge(ends, _) => PointOrigin::Edge { ends, side },
             Line::Side(_) => point.origin,
         };
         ClippedPoint { place, origin, ..*point }
     };
-    clipped.push(if is_inside { *start } else { cut(start) });
-    clipped.push(if enters { *end } else { cut(end) });
+    clipped.push(if is_inside { *start } else { point_cut_by_plane(start) });
+    clipped.push(if enters { *end } else { point_cut_by_plane(end) });
     clipped
 }
 

@@ -1,6 +1,6 @@
 //! Closest points of two separated polytopes, at vertices and edges.
 
-use super::{Placed, Polytope, edge_of, vector};
+use super::{Placed, Polytope, edge_as_centered_segment, vector};
 use crate::Real;
 use crate::private::constant;
 use nalgebra::Vector3;
@@ -14,38 +14,38 @@ const PARALLEL: f64 = 1e-12;
 
 /// Vertex or edge of a polytope, by its index.
 #[derive(Clone, Copy)]
-enum Feature {
+enum VertexOrEdge {
     Vertex(usize),
     Edge(usize),
 }
 
 /// Vertices or edges at which two polytopes are closest.
 #[derive(Clone, Copy)]
-pub(super) struct Closest([Feature; 2]);
+pub(super) struct ClosestFeatures([VertexOrEdge; 2]);
 
-impl Closest {
+impl ClosestFeatures {
     /// Returns two edges, by their indices.
-    pub(super) fn of_edges(edges: [usize; 2]) -> Closest {
-        Closest(edges.map(Feature::Edge))
+    pub(super) fn from_edge_indices(edges: [usize; 2]) -> ClosestFeatures {
+        ClosestFeatures(edges.map(VertexOrEdge::Edge))
     }
 
     /// Returns both features as segments in the axes of their bodies: midpoint, unit vector and half of the
     /// length; both are zero for a vertex.
-    pub(super) fn segments<T: Real>(
+    pub(super) fn features_as_segments<T: Real>(
         &self,
         first: &Polytope<'_>,
         second: &Polytope<'_>,
     ) -> [(Vector3<T>, Vector3<T>, T); 2] {
         let [a, b] = self.0;
         [(a, first), (b, second)].map(|(feature, shape)| match feature {
-            Feature::Vertex(k) => {
+            VertexOrEdge::Vertex(k) => {
                 let vertex = shape.vertices.get(k).map_or_else(Vector3::zeros, |p| vector(*p));
                 (vertex, Vector3::zeros(), T::zero())
             }
-            Feature::Edge(k) => shape
-                .edges
-                .get(k)
-                .map_or_else(|| (Vector3::zeros(), Vector3::zeros(), T::zero()), |edge| edge_of(shape, edge)),
+            VertexOrEdge::Edge(k) => shape.edges.get(k).map_or_else(
+                || (Vector3::zeros(), Vector3::zeros(), T::zero()),
+                |edge| edge_as_centered_segment(shape, edge),
+            ),
         })
     }
 }
@@ -85,8 +85,8 @@ pub(super) fn closest_features<T: Real>(
     first: &Placed<'_, T>,
     second: &Placed<'_, T>,
     is_bounded: bool,
-) -> Closest {
-    let mut best = (None::<T>, Closest([Feature::Vertex(0); 2]));
+) -> ClosestFeatures {
+    let mut best = (None::<T>, ClosestFeatures([VertexOrEdge::Vertex(0); 2]));
     let between = second.vertex(0) - first.vertex(0);
     for (own, other, is_second) in [(first, second, false), (second, first, true)] {
         // The distance is at least the difference of heights along a direction towards the other polytope.
@@ -105,8 +105,8 @@ pub(super) fn closest_features<T: Real>(
                 let t = (offset.dot(&half) / half.norm_squared()).clamp(-T::one(), T::one());
                 let square = (offset - half * t).norm_squared();
                 if best.0.is_none_or(|known| square < known) {
-                    let pair = [Feature::Vertex(i), Feature::Edge(j)];
-                    best = (Some(square), Closest(if is_second { [pair[1], pair[0]] } else { pair }));
+                    let pair = [VertexOrEdge::Vertex(i), VertexOrEdge::Edge(j)];
+                    best = (Some(square), ClosestFeatures(if is_second { [pair[1], pair[0]] } else { pair }));
                 }
             }
         }

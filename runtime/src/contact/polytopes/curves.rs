@@ -128,7 +128,7 @@ impl<T: Real> ClosestCurves<T> {
 
     /// Returns a value that is the signed distance for the curves that determine the contact, and less for
     /// all other curves.
-    pub(super) fn score(&self) -> T {
+    pub(super) fn separation_score(&self) -> T {
         self.separation + (self.separation - self.gap).min(T::zero())
     }
 }

@@ -22,7 +22,7 @@
 use super::axes::{FaceAxis, SeparationBounds, best_face_axis};
 use super::clip::opposite_face;
 use super::curves::{ClosestCurves, Curve};
-use super::search::{climb, separation};
+use super::search::{climb_to_separation_maximum, separation_along_normal};
 use super::{Placed, TIE_TOLERANCE, components, constant};
 use crate::Real;
 use nalgebra::Vector3;
@@ -54,7 +54,7 @@ const NEARLY_HIGHEST: f64 = 1e-4;
 
 /// Contact point on two curves.
 #[derive(Clone, Copy)]
-struct CurvedPoint<T> {
+struct CurveContactPoint<T> {
     /// One for a point on a face.
     on_face: T,
     /// Sign with which the cross product of both tangents points towards the first body; zero for none.
@@ -107,14 +107,14 @@ impl<T: Real> Points<T> {
 
 /// Selected features of a contact.
 struct SelectedPoints<T> {
-    curved: [Option<CurvedPoint<T>>; CURVED_POINTS],
+    curved: [Option<CurveContactPoint<T>>; CURVED_POINTS],
     /// Points of the body opposite to the face.
     fixed: Points<T>,
 }
 
 impl<T: Real> SelectedPoints<T> {
     /// Adds a contact point; without effect if there are too many.
-    fn push(&mut self, point: CurvedPoint<T>) {
+    fn push(&mut self, point: CurveContactPoint<T>) {
         if let Some(slot) = self.curved.iter_mut().find(|slot| slot.is_none()) {
             *slot = Some(point);
         }
@@ -139,16 +139,16 @@ pub(super) fn write_features<T: Real>(
 ) {
     let size = constant::<T>(first.shape.size + second.shape.size);
     let tolerance = size * constant(TIE_TOLERANCE);
-    let bounds = SeparationBounds::of_centers(first, second);
+    let bounds = SeparationBounds::bounds_from_centers(first, second);
     let Some(face) = best_face_axis(first, second, height, tolerance, &bounds) else { return };
     let (own, other) = if face.is_second { (second, first) } else { (first, second) };
-    let opposite = opposite_points(own, other, face.face, tolerance);
+    let opposite = points_opposite_to_face(own, other, face.face, tolerance);
     let curves = match opposite.has_lowest && face.distance >= -tolerance {
         true => None,
         false => closest_curves(first, second, &face, size),
     };
     let curves = curves.filter(|(best, ..)| {
-        let is_larger = best.score() > face.distance + tolerance;
+        let is_larger = best.separation_score() > face.distance + tolerance;
         is_larger || (!opposite.has_lowest && best.gap - best.separation <= tolerance)
     });
     let mut selected = SelectedPoints { curved: [None; CURVED_POINTS], fixed: opposite.fixed };
@@ -157,32 +157,32 @@ pub(super) fn write_features<T: Real>(
         least = best.separation - face.distance.min(T::zero());
         for closest in [Some(best), others[0].as_ref(), others[1].as_ref()].into_iter().flatten() {
             let (side, is_closest, curves) = (closest.side, closest.is_closest, closest.curves);
-            selected.push(CurvedPoint { on_face: T::zero(), side, is_closest, curves });
+            selected.push(CurveContactPoint { on_face: T::zero(), side, is_closest, curves });
         }
     }
     let nowhere = Curve::vertex(Vector3::zeros());
-    let on_face = |curve: Curve<T>| CurvedPoint {
+    let contact_point_on_face = |curve: Curve<T>| CurveContactPoint {
         on_face: T::one(),
         side: T::zero(),
         is_closest: T::zero(),
         curves: if face.is_second { [curve, nowhere] } else { [nowhere, curve] },
     };
-    opposite.moving.into_iter().flatten().for_each(|curve| selected.push(on_face(curve)));
+    opposite.moving.into_iter().flatten().for_each(|curve| selected.push(contact_point_on_face(curve)));
     if curves.is_none() && !opposite.has_lowest {
         // Rounding errors hide the point that has the separation of the face.
-        selected.push(on_face(Curve::vertex(other.support(&-own.normal(face.face)))));
+        selected.push(contact_point_on_face(Curve::vertex(other.support(&-own.normal(face.face)))));
     }
-    write_selected((first, second), &face, least, selected, on_face, into);
+    write_selected_features((first, second), &face, least, selected, contact_point_on_face, into);
 }
 
 /// Writes the face, the points on curves and the points fixed in the body opposite to the face. Points that
 /// are too many are omitted evenly around the face.
-fn write_selected<T: Real>(
+fn write_selected_features<T: Real>(
     (first, second): (&Placed<'_, T>, &Placed<'_, T>),
     face: &FaceAxis<T>,
     least: T,
     mut selected: SelectedPoints<T>,
-    on_face: impl Fn(Curve<T>) -> CurvedPoint<T>,
+    on_face: impl Fn(Curve<T>) -> CurveContactPoint<T>,
     into: &mut [T],
 ) {
     let (own, other) = if face.is_second { (second, first) } else { (first, second) };
@@ -201,7 +201,7 @@ fn write_selected<T: Real>(
             continue;
         };
         if let Some(slot) = slots.next() {
-            let values = [T::one()].into_iter().chain(components(other.to_body(place)));
+            let values = [T::one()].into_iter().chain(components(other.position_in_body_axes(place)));
             slot.iter_mut().zip(values).for_each(|(into, value)| *into = value);
         } else {
             selected.push(on_face(Curve::vertex(*place)));
@@ -213,7 +213,9 @@ fn write_selected<T: Real>(
         let values = [point.on_face, point.side, point.is_closest, a.radius, b.radius].into_iter();
         let vectors = [(first, a), (second, b)].into_iter().flat_map(|(body, curve)| {
             let directions = [curve.tangent, curve.curvature].map(|v| body.rotation.tr_mul(&v));
-            [body.to_body(&curve.point), directions[0], directions[1]].into_iter().flat_map(components)
+            [body.position_in_body_axes(&curve.point), directions[0], directions[1]]
+                .into_iter()
+                .flat_map(components)
         });
         slot.iter_mut().zip(values.chain(vectors)).for_each(|(into, value)| *into = value);
     }
@@ -247,7 +249,7 @@ fn perpendicular<T: Real>(axis: &Vector3<T>) -> Vector3<T> {
 }
 
 /// Whether a point is above a face: within its sides, up to a tolerance.
-fn is_above<T: Real>(shape: &Placed<'_, T>, face: usize, place: &Vector3<T>, tolerance: T) -> bool {
+fn is_above_face<T: Real>(shape: &Placed<'_, T>, face: usize, place: &Vector3<T>, tolerance: T) -> bool {
     let normal = shape.normal(face);
     if shape.shape.radius > 0.0 {
         let arm = place - shape.vertex(face as u8);
@@ -268,7 +270,7 @@ fn sides<T: Real>(corners: &Points<T>, normal: &Vector3<T>) -> impl Iterator<Ite
 }
 
 /// Returns the points of a body that are opposite to a face and above it.
-fn opposite_points<T: Real>(
+fn points_opposite_to_face<T: Real>(
     own: &Placed<'_, T>,
     other: &Placed<'_, T>,
     face: usize,
@@ -277,7 +279,7 @@ fn opposite_points<T: Real>(
     let (normal, offset) = (own.normal(face), own.offset(face));
     let height = |place: &Vector3<T>| normal.dot(place) - offset;
     let lowest = other.support(&-normal);
-    let mut has_lowest = is_above(own, face, &lowest, tolerance);
+    let mut has_lowest = is_above_face(own, face, &lowest, tolerance);
     let mut moving = [None; 2];
     let axis = other.direction(0);
     let cosine = axis.dot(&normal);
@@ -301,26 +303,26 @@ fn opposite_points<T: Real>(
     has_lowest |= fixed.places().iter().any(|place| height(place) <= reached);
     if is_round && is_upright {
         let is_tilted = (T::one() - cosine * cosine).max(T::zero()).sqrt() > constant(FLAT);
-        let is_used = is_tilted && is_above(own, face, &lowest, tolerance);
+        let is_used = is_tilted && is_above_face(own, face, &lowest, tolerance);
         moving[0] = is_used.then(|| Curve::circle(other, lowest));
     } else if is_round {
         // The ends of the part of the lowest line that is above the face.
-        let position = |place: &Vector3<T>| axis.dot(place);
-        let ordered = |a: &&Vector3<T>, b: &&Vector3<T>| {
-            position(a).partial_cmp(&position(b)).unwrap_or(core::cmp::Ordering::Equal)
+        let position_along_axis = |place: &Vector3<T>| axis.dot(place);
+        let compare_along_axis = |a: &&Vector3<T>, b: &&Vector3<T>| {
+            position_along_axis(a).partial_cmp(&position_along_axis(b)).unwrap_or(core::cmp::Ordering::Equal)
         };
         let places = fixed.places().iter();
-        let ends = [places.clone().min_by(ordered), places.max_by(ordered)];
+        let ends = [places.clone().min_by(compare_along_axis), places.max_by(compare_along_axis)];
         moving = ends.map(|end| end.map(|end| Curve::circle(other, *end)));
         let lower = moving.get_mut(usize::from(cosine < T::zero()));
-        if let (Some(lower), true) = (lower, is_above(own, face, &lowest, tolerance)) {
+        if let (Some(lower), true) = (lower, is_above_face(own, face, &lowest, tolerance)) {
             *lower = Some(Curve::circle(other, lowest));
         }
         fixed.count = 0;
     } else {
         rotate_to_lowest(&mut fixed, height);
         let is_listed = fixed.places().first().is_some_and(|place| height(place) <= reached);
-        let is_hidden = !is_listed && is_above(own, face, &lowest, tolerance);
+        let is_hidden = !is_listed && is_above_face(own, face, &lowest, tolerance);
         moving[0] = is_hidden.then(|| Curve::vertex(lowest));
     }
     OppositePoints { moving, fixed, has_lowest }
@@ -392,16 +394,19 @@ fn closest_curves<T: Real>(
     let of_face = if face.is_second { second.normal(face.face) } else { -first.normal(face.face) };
     let between = first.center() - second.center();
     let overlaps = face.distance < T::zero();
-    let across = |shape: &Placed<'_, T>| {
+    let center_vector_across_axis = |shape: &Placed<'_, T>| {
         let axis = shape.direction(0);
         between - axis * axis.dot(&between)
     };
     let crossing = first.direction(0).cross(&second.direction(0));
-    let other_starts = [between, across(first), across(second), crossing].map(|start| {
-        let norm = start.norm();
-        let side = if start.dot(&between) < T::zero() { -norm } else { norm };
-        (overlaps && norm > constant(FLAT)).then(|| start / side)
-    });
+    let other_starts =
+        [between, center_vector_across_axis(first), center_vector_across_axis(second), crossing].map(
+            |start| {
+                let norm = start.norm();
+                let side = if start.dot(&between) < T::zero() { -norm } else { norm };
+                (overlaps && norm > constant(FLAT)).then(|| start / side)
+            },
+        );
     let starts = [Some(of_face)].into_iter().chain(other_starts).flatten();
     let tolerance = size * constant(TIE_TOLERANCE);
     let mut highest: Option<(T, Vector3<T>)> = None;
@@ -410,7 +415,7 @@ fn closest_curves<T: Real>(
         if highest.is_some_and(|(value, _)| value > -tolerance) {
             break;
         }
-        let found = climb(first, second, start, size);
+        let found = climb_to_separation_maximum(first, second, start, size);
         if highest.is_none_or(|highest| found.0 > highest.0) {
             highest = Some(found);
         }
@@ -420,7 +425,7 @@ fn closest_curves<T: Real>(
     for_each_segment(first, &-normal, size, &mut |a| {
         for_each_segment(second, &normal, size, &mut |b| {
             let Some(found) = closest_of_segments((first, second), (a, b), &normal, size) else { return };
-            if best.as_ref().is_none_or(|best| found.0.score() > best.0.score()) {
+            if best.as_ref().is_none_or(|best| found.0.separation_score() > best.0.separation_score()) {
                 best = Some(found);
             }
         });
@@ -456,19 +461,19 @@ fn closest_of_segments<T: Real>(
     size: T,
 ) -> Option<SelectedCurves<T>> {
     let tolerance = size * constant(TIE_TOLERANCE);
-    let solve = |i: usize, j: usize| {
+    let closest_points_on_pair = |i: usize, j: usize| {
         let mut pair = ClosestCurves::solve([*a.curves.get(i)?, *b.curves.get(j)?], normal, size)?;
         let [own, other] = &pair.curves;
         let is_inside =
             (i > 0 || a.contains(&own.point, tolerance)) && (j > 0 || b.contains(&other.point, tolerance));
-        pair.separation = separation(bodies.0, bodies.1, &pair.normal);
+        pair.separation = separation_along_normal(bodies.0, bodies.1, &pair.normal);
         is_inside.then_some(pair)
     };
     let mut best: Option<(ClosestCurves<T>, bool)> = None;
     for i in 0..3 {
         for j in 0..3 {
-            let Some(pair) = solve(i, j) else { continue };
-            if best.as_ref().is_none_or(|(best, _)| pair.score() > best.score()) {
+            let Some(pair) = closest_points_on_pair(i, j) else { continue };
+            if best.as_ref().is_none_or(|(best, _)| pair.separation_score() > best.separation_score()) {
                 best = Some((pair, i == 0 || j == 0));
             }
         }
@@ -477,17 +482,19 @@ fn closest_of_segments<T: Real>(
     let mut others = [None::<ClosestCurves<T>>; 2];
     let along = a.direction();
     if is_on_line && along.dot(&b.direction()).abs() > constant(ALIGNED) {
-        let distance = |pair: &ClosestCurves<T>| along.dot(&(pair.curves[0].point - best.curves[0].point));
+        let distance_along_segment =
+            |pair: &ClosestCurves<T>| along.dot(&(pair.curves[0].point - best.curves[0].point));
         for (i, j) in [(0, 1), (0, 2), (1, 0), (2, 0)] {
-            let Some(pair) = solve(i, j) else { continue };
+            let Some(pair) = closest_points_on_pair(i, j) else { continue };
             let is_usable = pair.gap >= best.separation && pair.normal.dot(&best.normal) > constant(ALIGNED);
-            let reach = distance(&pair);
+            let reach = distance_along_segment(&pair);
             // At the same end, one pair is enough.
             if !is_usable || reach.abs() < size * constant(1e-6) {
                 continue;
             }
             let end = others.get_mut(usize::from(reach > T::zero()));
-            if let Some(end) = end.filter(|end| end.is_none_or(|known| distance(&known).abs() < reach.abs()))
+            if let Some(end) =
+                end.filter(|end| end.is_none_or(|known| distance_along_segment(&known).abs() < reach.abs()))
             {
                 *end = Some(pair);
             }

@@ -22,19 +22,23 @@ const SUPPORTS: usize = 40;
 const ACCURACY: f64 = 1e-13;
 
 /// Returns the separation of two bodies along a unit vector towards the first.
-pub(super) fn separation<T: Real>(first: &Placed<'_, T>, second: &Placed<'_, T>, normal: &Vector3<T>) -> T {
+pub(super) fn separation_along_normal<T: Real>(
+    first: &Placed<'_, T>,
+    second: &Placed<'_, T>,
+    normal: &Vector3<T>,
+) -> T {
     normal.dot(&(first.support(&-normal) - second.support(normal)))
 }
 
 /// Returns a direction with a local maximum of the separation, and the separation. Of separated bodies it is
 /// the global maximum.
-pub(super) fn climb<T: Real>(
+pub(super) fn climb_to_separation_maximum<T: Real>(
     first: &Placed<'_, T>,
     second: &Placed<'_, T>,
     start: Vector3<T>,
     size: T,
 ) -> (T, Vector3<T>) {
-    let mut best = (separation(first, second, &start), start);
+    let mut best = (separation_along_normal(first, second, &start), start);
     let margin = size * constant(MARGIN);
     let mut shift = margin;
     for _ in 0..REPETITIONS {
@@ -44,7 +48,7 @@ pub(super) fn climb<T: Real>(
         let connection = shortest_connection(first, second, &(best.1 * shift));
         let norm = connection.norm();
         let next = if norm > T::zero() { connection / norm } else { best.1 };
-        let value = separation(first, second, &next);
+        let value = separation_along_normal(first, second, &next);
         if value + shift * next.dot(&best.1) <= T::zero() {
             // The bodies still overlap.
             shift *= constant(GROWTH);
@@ -76,7 +80,7 @@ fn shortest_connection<T: Real>(
         if least.is_some() && square - connection.dot(&support) <= square * constant(ACCURACY) {
             break;
         }
-        let (point, reduced) = simplex.nearest_with(support);
+        let (point, reduced) = simplex.nearest_to_origin_with(support);
         let next = point.norm_squared();
         if least.is_some_and(|least| next >= least) {
             break;
@@ -95,21 +99,21 @@ struct Simplex<T> {
 impl<T: Real> Simplex<T> {
     /// Returns the point nearest to the origin of the simplex with another point, and the simplex with this
     /// point in its interior. The origin is outside, and the nearest point is not in the old simplex.
-    fn nearest_with(&self, newest: Vector3<T>) -> (Vector3<T>, Simplex<T>) {
+    fn nearest_to_origin_with(&self, newest: Vector3<T>) -> (Vector3<T>, Simplex<T>) {
         let points = self.points.get(..self.count).unwrap_or(&[]);
-        let simplex = |points: [Vector3<T>; 3], count| Simplex {
+        let simplex_from_points = |points: [Vector3<T>; 3], count| Simplex {
             points: [points[0], points[1], points[2], Vector3::zeros()],
             count,
         };
         let zero = Vector3::zeros();
-        let mut best = (newest, simplex([newest, zero, zero], 1));
+        let mut best = (newest, simplex_from_points([newest, zero, zero], 1));
         let (inside, one) = (T::zero(), T::one());
         for (k, point) in points.iter().enumerate() {
             let side = point - newest;
             let t = -newest.dot(&side) / side.norm_squared();
             let nearest = newest + side * t;
             if t > inside && t < one && nearest.norm_squared() < best.0.norm_squared() {
-                best = (nearest, simplex([newest, *point, zero], 2));
+                best = (nearest, simplex_from_points([newest, *point, zero], 2));
             }
             for other in points.iter().skip(k + 1) {
                 let next = other - newest;
@@ -120,7 +124,7 @@ impl<T: Real> Simplex<T> {
                 let nearest = newest + side * s + next * t;
                 let is_inside = determinant > inside && s > inside && t > inside && s + t < one;
                 if is_inside && nearest.norm_squared() < best.0.norm_squared() {
-                    best = (nearest, simplex([newest, *point, *other], 3));
+                    best = (nearest, simplex_from_points([newest, *point, *other], 3));
                 }
             }
         }

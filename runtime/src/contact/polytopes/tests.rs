@@ -21,8 +21,9 @@ fn octahedron_faces() -> ([PolytopeFace<'static>; 8], Vec<PolytopeEdge>) {
     for (k, corners) in CORNERS.iter().enumerate() {
         for side in 0..3 {
             let [from, to] = [corners[side], corners[(side + 1) % 3]];
-            let has_side = |other: &[u8; 3]| (0..3).any(|i| [other[i], other[(i + 1) % 3]] == [to, from]);
-            let other = CORNERS.iter().position(has_side).expect("a face on the other side");
+            let has_reversed_edge =
+                |other: &[u8; 3]| (0..3).any(|i| [other[i], other[(i + 1) % 3]] == [to, from]);
+            let other = CORNERS.iter().position(has_reversed_edge).expect("a face on the other side");
             if from < to {
                 edges.push(PolytopeEdge { ends: [to, from], faces: [k as u8, other as u8] });
             }
@@ -38,14 +39,15 @@ fn bounds_do_not_change_features() {
     let shape = Polytope { vertices: &VERTICES, faces: &faces, edges: &edges, size: 0.6, radius: 0.0 };
     let pair = PolytopePair { first: shape, second: shape, points: 6 };
     let mut state = 9_u64;
-    let mut next = || {
+    let mut next_random_number = || {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (state >> 33) as f64 / f64::from(1_u32 << 30) - 1.0
     };
     for k in 0..600 {
-        let mut vector = |size: f64| Vector3::new(next(), next(), next()) * size;
-        let turn = Rotation3::from_scaled_axis(vector(3.0)).into_inner();
-        let place = vector([0.1, 0.5, 3.0][k % 3]);
+        let mut random_vector =
+            |size: f64| Vector3::new(next_random_number(), next_random_number(), next_random_number()) * size;
+        let turn = Rotation3::from_scaled_axis(random_vector(3.0)).into_inner();
+        let place = random_vector([0.1, 0.5, 3.0][k % 3]);
         let pose: Vec<f64> = turn.iter().copied().chain(place.iter().copied()).chain([place[2]]).collect();
         let mut features = [vec![0.0; pair.feature_count()], vec![0.0; pair.feature_count()]];
         let [bounded, all] = &mut features;

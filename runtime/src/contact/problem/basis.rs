@@ -86,7 +86,7 @@ impl<T: Real> ImpulseDerivativeBlock<T> {
     }
 
     /// Adds the product of a column and a row of values to the rows of friction from `first` on.
-    pub(super) fn add_product(&mut self, first: usize, factor: T, [x, y]: [T; 2]) {
+    pub(super) fn add_scaled_outer_product(&mut self, first: usize, factor: T, [x, y]: [T; 2]) {
         self.add_entry(first, first, factor * x * x);
         self.add_entry(first, first + 1, factor * x * y);
         self.add_entry(first + 1, first, factor * x * y);
@@ -135,7 +135,11 @@ impl<T: Real, const NR: usize> DelassusFactor<T, NR> {
     }
 
     /// Sets the rows to `chosen` ones of another matrix `B`.
-    pub(super) fn select_rows<const N: usize>(&mut self, from: &DelassusFactor<T, N>, chosen: &[usize]) {
+    pub(super) fn copy_selected_rows<const N: usize>(
+        &mut self,
+        from: &DelassusFactor<T, N>,
+        chosen: &[usize],
+    ) {
         if from.rank == 0 {
             return;
         }
@@ -291,7 +295,7 @@ impl<T: Real, const NR: usize> DelassusFactor<T, NR> {
 
     /// Returns the largest sum of the magnitudes of the terms of a contact velocity, from magnitudes `free`
     /// on.
-    pub(super) fn largest_magnitude(&self, free: &RowList<T, NR>, impulses: &RowList<T, NR>) -> T {
+    pub(super) fn largest_term_magnitude_sum(&self, free: &RowList<T, NR>, impulses: &RowList<T, NR>) -> T {
         let mut w = RowList::<T, NR>::repeat_entry(T::zero());
         let nonzero_parts_of_rows = || (0..self.size).map(|i| self.nonzero_part_of_row(i));
         for ((first, row), impulse) in nonzero_parts_of_rows().zip(impulses.iter()) {

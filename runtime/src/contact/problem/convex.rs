@@ -310,7 +310,7 @@ impl<'a, T: Real, const NK: usize, const NR: usize> ConvexProblem<'a, T, NK, NR>
             let bound = part.friction * (found.normal + cone.floor);
             if part.count == 2 && bound > none {
                 let (x, y) = (wanted[part.first] / *size, wanted[part.first + 1] / *size);
-                block.add_product(first, bound / (*size * weight), [-y, x]);
+                block.add_scaled_outer_product(first, bound / (*size * weight), [-y, x]);
             }
         }
         if found.has_positive_normal_impulse {

@@ -44,7 +44,7 @@ pub(super) fn eliminate_with_pivots<T: Real, const N: usize, const NR: usize>(
                 continue;
             }
             // Entries before the pivot are not read again.
-            subtract_short_row(row, factor, pivots, column + 1..size);
+            subtract_range_or_short_row(row, factor, pivots, column + 1..size);
             subtract_multiple(other, factor, value);
         }
     }
@@ -98,7 +98,7 @@ pub(super) fn factorise_symmetric<T: Real, const NR: usize>(
         let Some(row) = done.last() else { break };
         for (below, part) in rows.iter_mut().zip(row.iter().skip(j + 1)).take(size - j - 1) {
             if *part != T::zero() {
-                subtract_short_row(below, *part * reciprocal, row, j + 1..size);
+                subtract_range_or_short_row(below, *part * reciprocal, row, j + 1..size);
             }
         }
     }
@@ -140,7 +140,7 @@ fn subtract_row_range<T: Real, const N: usize>(
 
 /// Subtracts a range of entries of a multiple of a row from another row. Short rows are subtracted as a
 /// whole, because their length is known at compile time; the entries outside of the range must not matter.
-fn subtract_short_row<T: Real, const N: usize>(
+fn subtract_range_or_short_row<T: Real, const N: usize>(
     from: &mut RowList<T, N>,
     factor: T,
     row: &RowList<T, N>,

@@ -146,7 +146,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
             (0..own.size).for_each(|i| impulses[i] = start[places[i]]);
             impulses
         });
-        let found = own.solve_from(start.as_ref(), &mut ImpulseEquations::new());
+        let found = own.solve_impulses_from_start(start.as_ref(), &mut ImpulseEquations::new());
         let found = found.unwrap_or(own.closest);
         self.iterations.set(self.iterations.get().saturating_add(own.iterations.get()));
         (0..own.size).for_each(|i| impulses[places[i]] = found[i]);

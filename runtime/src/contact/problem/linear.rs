@@ -141,7 +141,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
             _ => 0,
         };
         for pass in 0..passes {
-            let rates = if pass == 0 { *free } else { self.velocities_after_impulses(*free, &impulses) };
+            let rates = if pass == 0 { *free } else { self.add_contact_velocity_changes(*free, &impulses) };
             let mut right = RowList::repeat_entry(T::zero());
             right.iter_mut().zip(held.iter()).take(size).for_each(|(r, i)| *r = wanted[*i] - rates[*i]);
             solve_with_stored_factors(matrix, size, &mut right);

@@ -37,7 +37,8 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         self.limited_newton_impulses(STEPS, start, matrix)
     }
 
-    /// Returns the result of [`newton_impulses`](Self::newton_impulses) after a given number of iterations at most.
+    /// Returns the result of [`newton_impulses`](Self::newton_impulses) after a given number of iterations at
+    /// most.
     pub(super) fn limited_newton_impulses(
         &self,
         steps: usize,
@@ -179,7 +180,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
                     let (bound, factor) = self.sliding_bound_and_factor(trial, part, size);
                     if tangents.len() == 2 && bound > T::zero() {
                         let [x, y] = direction;
-                        block.add_product(first, bound / size * factor, [-y, x]);
+                        block.add_scaled_outer_product(first, bound / size * factor, [-y, x]);
                     }
                 }
             }

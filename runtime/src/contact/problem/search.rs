@@ -68,7 +68,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     /// The contact of the mechanism whose conditions are violated most, if by more than half of the digits;
     /// [`closest`](Self::closest) then has the impulses that violate them least of all that were found.
     pub(in super::super) fn solve_impulses(&mut self) -> Result<RowList<T, NR>, usize> {
-        self.solve_from(None, &mut ImpulseEquations::new())
+        self.solve_impulses_from_start(None, &mut ImpulseEquations::new())
     }
 
     /// Solves with given equations; the search begins at the impulses of `start`.
@@ -76,7 +76,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     /// # Errors
     ///
     /// As [`solve`](Self::solve).
-    pub(in super::super) fn solve_from(
+    pub(in super::super) fn solve_impulses_from_start(
         &mut self,
         start: Option<&RowList<T, NR>>,
         equations: &mut ImpulseEquations<T, NR>,
@@ -262,7 +262,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         let mut impulses = start;
         if self.is_frictionless() {
             impulses = self.active_set_impulses();
-            if self.is_solved(&impulses) {
+            if self.is_solved_by_impulses(&impulses) {
                 return impulses;
             }
         }
@@ -360,7 +360,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         impulses
     }
 
-    fn is_solved(&self, impulses: &RowList<T, NR>) -> bool {
+    fn is_solved_by_impulses(&self, impulses: &RowList<T, NR>) -> bool {
         self.is_solved_by(&self.evaluate_impulse_trial(*impulses))
     }
 
@@ -413,7 +413,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
             }
             impulses = best.impulses;
         }
-        self.is_solved(&impulses).then_some(impulses)
+        self.is_solved_by_impulses(&impulses).then_some(impulses)
     }
 
     /// Returns impulses by Newton's method from each guess in which one or two contacts stick, as a body with

@@ -142,20 +142,20 @@ impl<T: Real, const NR: usize> LinearisedImpulses<T, NR> {
         friction: Option<&SMatrix<T, NR, C>>,
     ) -> SMatrix<T, NR, C> {
         let mut changes = zeros();
-        dispatch::<0, T, _, _>(&ImpulseChanges { equations: self, rates, friction }, &mut changes);
+        dispatch::<0, T, _, _>(&ImpulseChangeEquations { equations: self, rates, friction }, &mut changes);
         changes
     }
 }
 
 /// Equations of impulses with their right-hand sides ([`LinearisedImpulses::impulse_changes`]).
-struct ImpulseChanges<'a, T, const NR: usize, const C: usize> {
+struct ImpulseChangeEquations<'a, T, const NR: usize, const C: usize> {
     equations: &'a LinearisedImpulses<T, NR>,
     rates: &'a SMatrix<T, NR, C>,
     friction: Option<&'a SMatrix<T, NR, C>>,
 }
 
 impl<T: Real, const NR: usize, const C: usize> Evaluate<0, &mut SMatrix<T, NR, C>>
-    for ImpulseChanges<'_, T, NR, C>
+    for ImpulseChangeEquations<'_, T, NR, C>
 {
     type Output = ();
 
@@ -292,7 +292,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     }
 
     /// Returns all rows in which contacts can have impulses.
-    pub(in super::super) fn chosen_rows_with_impulses(&self) -> ContactRowMask<NR> {
+    pub(in super::super) fn possible_impulse_row_mask(&self) -> ContactRowMask<NR> {
         let mut rows = ContactRowMask::repeat_entry(false);
         for k in (0..self.count).filter(|k| self.step[*k] > T::zero()) {
             let (n, _) = self.rows_of_contact(k);
@@ -402,7 +402,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
 
     /// Returns, for each contact whose restitution demands a normal velocity, the row of the mechanism and
     /// the derivative of that velocity with respect to the normal velocity before.
-    pub(in super::super) fn restitution_derivatives(&self, before: &SVector<T, NR>) -> SVector<T, NR> {
+    pub(in super::super) fn demand_derivatives_by_velocity(&self, before: &SVector<T, NR>) -> SVector<T, NR> {
         let mut factors = SVector::zeros();
         for k in (0..self.count).filter(|k| self.has_gap_function(*k) && self.least[*k] > T::zero()) {
             let row = self.places[self.rows[k].first];
@@ -434,7 +434,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
 
     /// Returns the rows of normals whose gaps are zero after the displacement that closes gaps, and those
     /// that it only keeps from penetrating deeper. `pushes` is the displacement, if there is any.
-    pub(in super::super) fn closed_rows(
+    pub(in super::super) fn closed_and_limited_gap_rows(
         &self,
         impulses: &RowList<T, NR>,
         (gaps, near, reach): (&SVector<T, NK>, T, T),

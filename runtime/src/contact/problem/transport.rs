@@ -61,14 +61,14 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
                 let at_start = match is_regular {
                     true => Some(found),
                     false => {
-                        sliding.map(|recorded| self.impulses_for_velocity_change(recorded, rates, equations))
+                        sliding.map(|recorded| self.impulses_for_rate_change(recorded, rates, equations))
                     }
                 };
                 if let Some(turned) =
                     at_start.and_then(|at_start| self.friction_correction_for_slip_change(&at_start, rates))
                 {
                     correction += velocity_by_impulses(&turned);
-                    changes = self.velocities_after_impulses(changes, &turned);
+                    changes = self.add_contact_velocity_changes(changes, &turned);
                 }
                 (correction, changes)
             }
@@ -111,7 +111,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
 
     /// Returns contact impulses near others that change the contact velocities by `rates` (rows of the
     /// mechanism).
-    fn impulses_for_velocity_change(
+    fn impulses_for_rate_change(
         &self,
         others: &RowList<T, NR>,
         rates: &SVector<T, NR>,
@@ -136,7 +136,10 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
 
     /// Returns contact impulses that change the contact velocities by `changes`; both have the rows of all
     /// contacts of the mechanism.
-    pub(in super::super) fn impulses_for_changes(&self, changes: &SVector<T, NR>) -> SVector<T, NR> {
+    pub(in super::super) fn mechanism_impulses_for_contact_changes(
+        &self,
+        changes: &SVector<T, NR>,
+    ) -> SVector<T, NR> {
         self.values_at_mechanism_rows(
             &self.impulses_for_contact_changes(changes, &mut ImpulseEquations::new()).0,
         )

@@ -22,14 +22,18 @@ impl<T: Real, const CR: usize, const NV: usize, const NU: usize> ContactRowDeriv
     }
 
     /// Adds a matrix times the derivatives of a vector.
-    pub(super) fn add_product(&mut self, by: &SMatrix<T, CR, NV>, of: &VectorWithDerivatives<T, NV, NU>) {
+    pub(super) fn add_matrix_product(
+        &mut self,
+        by: &SMatrix<T, CR, NV>,
+        of: &VectorWithDerivatives<T, NV, NU>,
+    ) {
         add_product(&mut self.by_q, by, &of.by_q);
         add_product(&mut self.by_v, by, &of.by_v);
         add_product(&mut self.by_u, by, &of.by_u);
     }
 
     /// Adds the product of a matrix `by` and the derivatives `of`, whose rows belong to contact velocities.
-    pub(super) fn add_rows(&mut self, by: &SMatrix<T, CR, CR>, of: &Self) {
+    pub(super) fn add_row_matrix_product(&mut self, by: &SMatrix<T, CR, CR>, of: &Self) {
         add_product(&mut self.by_q, by, &of.by_q);
         add_product(&mut self.by_v, by, &of.by_v);
         add_product(&mut self.by_u, by, &of.by_u);

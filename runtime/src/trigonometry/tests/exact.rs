@@ -25,8 +25,8 @@ pub fn sin_cos(x: f64) -> [DoubleDouble; 2] {
     let (mut odd, mut even) = (sine, versine);
     for k in (2..28).step_by(2) {
         let k = f64::from(k);
-        odd = divide_double(multiply(odd, (-square.0, -square.1)), k * (k + 1.0));
-        even = divide_double(multiply(even, (-square.0, -square.1)), (k + 1.0) * (k + 2.0));
+        odd = divide_by_double(multiply(odd, (-square.0, -square.1)), k * (k + 1.0));
+        even = divide_by_double(multiply(even, (-square.0, -square.1)), (k + 1.0) * (k + 2.0));
         sine = add(sine, odd);
         versine = add(versine, even);
     }
@@ -37,12 +37,12 @@ pub fn sin_cos(x: f64) -> [DoubleDouble; 2] {
         (sine, versine) = (multiply(twice, cosine), multiply(twice, sine));
     }
     let cosine = add((1.0, 0.0), (-versine.0, -versine.1));
-    let negated_double = |x: DoubleDouble| (-x.0, -x.1);
+    let negated_double_double = |x: DoubleDouble| (-x.0, -x.1);
     match quarters.rem_euclid(4.0) as u8 {
         0 => [sine, cosine],
-        1 => [cosine, negated_double(sine)],
-        2 => [negated_double(sine), negated_double(cosine)],
-        _ => [negated_double(cosine), sine],
+        1 => [cosine, negated_double_double(sine)],
+        2 => [negated_double_double(sine), negated_double_double(cosine)],
+        _ => [negated_double_double(cosine), sine],
     }
 }
 
@@ -68,7 +68,7 @@ fn multiply(a: DoubleDouble, b: DoubleDouble) -> DoubleDouble {
     normalised_double_double(product, a.0.mul_add(b.0, -product) + (a.0 * b.1 + a.1 * b.0))
 }
 
-fn divide_double(a: DoubleDouble, by: f64) -> DoubleDouble {
+fn divide_by_double(a: DoubleDouble, by: f64) -> DoubleDouble {
     let quotient = a.0 / by;
     normalised_double_double(quotient, ((-quotient).mul_add(by, a.0) + a.1) / by)
 }

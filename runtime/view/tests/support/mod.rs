@@ -18,7 +18,7 @@ pub fn channels(motion: &Value) -> Vec<Vec<i64>> {
     let mut at = 0;
     let mut channels = Vec::new();
     while at < bytes.len() {
-        let mut integer = || {
+        let mut decode_integer = || {
             let (mut n, mut shift) = (0_u64, 0);
             loop {
                 n |= u64::from(bytes[at] & 0x7f) << shift;
@@ -29,11 +29,11 @@ pub fn channels(motion: &Value) -> Vec<Vec<i64>> {
                 shift += 7;
             }
         };
-        let mut value = integer();
-        let changes = integer() == 1;
+        let mut value = decode_integer();
+        let changes = decode_integer() == 1;
         let mut channel = vec![value];
         for _ in 1..count {
-            value += if changes { integer() } else { 0 };
+            value += if changes { decode_integer() } else { 0 };
             channel.push(value);
         }
         channels.push(channel);

@@ -9,19 +9,19 @@ pub struct Jet(pub [f64; 3]);
 
 impl Jet {
     /// Returns the composition with a function that has this value and these derivatives.
-    fn map(self, f: [f64; 3]) -> Jet {
+    fn compose_with_function(self, f: [f64; 3]) -> Jet {
         let [_, d, dd] = self.0;
         Jet([f[0], f[1] * d, f[2] * d * d + f[1] * dd])
     }
 
     fn sin(self) -> Jet {
         let (s, c) = self.0[0].sin_cos();
-        self.map([s, c, -s])
+        self.compose_with_function([s, c, -s])
     }
 
     fn cos(self) -> Jet {
         let (s, c) = self.0[0].sin_cos();
-        self.map([c, -s, -c])
+        self.compose_with_function([c, -s, -c])
     }
 
     fn times_jet(self, o: Jet) -> Jet {
@@ -37,18 +37,18 @@ impl Jet {
         Jet(self.0.map(|x| x * by))
     }
 
-    fn add(self, x: f64) -> Jet {
+    fn plus_number(self, x: f64) -> Jet {
         self.plus_jet(Jet([x, 0.0, 0.0]))
     }
 
     fn square_root(self) -> Jet {
         let x = self.0[0].sqrt();
-        self.map([x, 0.5 / x, -0.25 / (x * x * x)])
+        self.compose_with_function([x, 0.5 / x, -0.25 / (x * x * x)])
     }
 
-    fn inverse(self) -> Jet {
+    fn reciprocal(self) -> Jet {
         let x = 1.0 / self.0[0];
-        self.map([x, -x * x, 2.0 * x * x * x])
+        self.compose_with_function([x, -x * x, 2.0 * x * x * x])
     }
 
     fn atan2(y: Jet, x: Jet) -> Jet {
@@ -69,26 +69,33 @@ impl Jet {
 /// and rocker over this line is a root of `((l2 + l3)² − D²)(D² − (l2 − l3)²)`. One of the factors is a
 /// square: `4 base l1 cos²(θ/2)` or `4 base l1 sin²(θ/2)`. The assembly mode continues smoothly where the
 /// root of this square changes sign.
-pub fn flat_branch_angles([base, l1, l2, l3]: [f64; 4], at_pi: bool, theta: f64, side: f64) -> [Jet; 3] {
+pub fn branch_angles_of_singular_linkage(
+    [base, l1, l2, l3]: [f64; 4],
+    at_pi: bool,
+    theta: f64,
+    side: f64,
+) -> [Jet; 3] {
     let theta = Jet([theta, 1.0, 0.0]);
     let half = theta.scaled_jet(0.5);
     // Nearly equal lengths are subtracted first: the difference of their squares would lose digits.
     let (apart, versine) = (base - l1, half.sin().times_jet(half.sin()).scaled_jet(2.0));
     let difference = if at_pi { l2 - l3 } else { apart.abs() };
     // Vector from the crank's tip to the rocker's foot.
-    let (dx, dy) = (versine.scaled_jet(l1).add(apart), theta.sin().scaled_jet(-l1));
-    let square = versine.scaled_jet(2.0 * base * l1).add(apart * apart);
+    let (dx, dy) = (versine.scaled_jet(l1).plus_number(apart), theta.sin().scaled_jet(-l1));
+    let square = versine.scaled_jet(2.0 * base * l1).plus_number(apart * apart);
     let width = 2.0 * (base * l1).sqrt();
     let height = match at_pi {
-        true => half.cos().scaled_jet(width).times_jet(square.add(-difference * difference).square_root()),
+        true => {
+            half.cos().scaled_jet(width).times_jet(square.plus_number(-difference * difference).square_root())
+        }
         false => half
             .sin()
             .scaled_jet(width)
-            .times_jet(square.scaled_jet(-1.0).add((l2 + l3) * (l2 + l3)).square_root()),
+            .times_jet(square.scaled_jet(-1.0).plus_number((l2 + l3) * (l2 + l3)).square_root()),
     };
     // Twice D times the foot point and the height of the triangle.
-    let (along, across) = (square.add(difference * (l2 + l3)), height.scaled_jet(side));
-    let over = square.scaled_jet(2.0).inverse();
+    let (along, across) = (square.plus_number(difference * (l2 + l3)), height.scaled_jet(side));
+    let over = square.scaled_jet(2.0).reciprocal();
     let tip_coordinate =
         |a: Jet, b: Jet, c: Jet, d: Jet| a.times_jet(b).plus_jet(c.times_jet(d)).times_jet(over);
     let (px, py) =
@@ -137,11 +144,11 @@ impl<const NV: usize, const N: usize> Branch<NV, N> {
         let a = self.by * solve_reduced_system(-(self.by.transpose() * force)) + self.bend;
         // Accelerations that each force alone would cause, through the motion of its body, which is known
         // only to 1e-11 m or rad.
-        let acceleration_magnitude = |k: usize| {
+        let acceleration_from_single_force = |k: usize| {
             let by = self.by.row(k).map(|by| by.signum() * by.abs().max(1e-2)).transpose();
             (self.by * solve_reduced_system(by * bias[k])).amax()
         };
-        let most = (0..NV).map(acceleration_magnitude).fold(0.0, f64::max);
+        let most = (0..NV).map(acceleration_from_single_force).fold(0.0, f64::max);
         // Light bodies with stiff springs would have large accelerations without constraints. The constraint
         // forces have the rounding errors of these accelerations.
         let free = mass.cholesky().map_or(0.0, |mass| mass.solve(&bias).amax());

@@ -127,7 +127,7 @@ pub struct StackedWindows {
 /// Linkage of three parallelogram windows side by side, whose posts have equal lengths.
 #[mechanism(gravity = down * y + aside * x)]
 #[derive(Clone, Copy, Debug)]
-pub struct Row {
+pub struct RowOfWindows {
     pub down: f64,
     pub aside: f64,
     pub post: f64,

@@ -23,7 +23,7 @@ macro_rules! chain {
 }
 
 /// Returns the constructors of all chains of the comparison.
-pub fn chain_robot_constructors() -> Vec<fn() -> Robot> {
+pub fn chain_robot_constructors() -> Vec<fn() -> RobotWithContenders> {
     vec![
         || chain!("chain_6", 6, Chain6, Chain6Parameters, PreparedChain6Parameters, functions derivatives),
         || chain!("chain_16", 16, Chain16, Chain16Parameters, PreparedChain16Parameters, functions derivatives),

@@ -18,9 +18,9 @@ fn ring_with_nine_atoms() -> Ring {
     ring
 }
 
-fn value_of_items(items: &[Item], atoms: &[f64]) -> f64 {
+fn value_of_items(items: &[PrintedTerm], atoms: &[f64]) -> f64 {
     let value_of_atom_power = |(k, n): (usize, u8)| atoms[k].powi(n.into());
-    let item_value = |item: &Item| {
+    let item_value = |item: &PrintedTerm| {
         let sums = item.sums.iter().map(|sum| value_of_items(&sum.items, atoms).powi(sum.power.into()));
         item.coefficient
             * item.factor.atoms_with_powers().map(value_of_atom_power).product::<f64>()
@@ -36,11 +36,11 @@ fn product_of_polynomials(ring: &mut Ring, all: &[&Polynomial]) -> Polynomial {
 
 /// Returns a random polynomial with at most `most` terms and small integer coefficients.
 fn random_polynomial(r: &mut Random, most: u64) -> Polynomial {
-    let terms = (0..1 + r.number_below(most)).map(|_| {
-        let atoms =
-            (0..1 + r.number_below(3)).map(|_| Monomial::first_power_of_atom(r.number_below(9) as usize));
+    let terms = (0..1 + r.random_number_below(most)).map(|_| {
+        let atoms = (0..1 + r.random_number_below(3))
+            .map(|_| Monomial::first_power_of_atom(r.random_number_below(9) as usize));
         let monomial = atoms.fold(Monomial::ONE, |m, atom| m.checked_product(atom).unwrap());
-        Term { monomial, coefficient: [1.0, -1.0, 2.0, 0.5, -3.0][r.number_below(5) as usize] }
+        Term { monomial, coefficient: [1.0, -1.0, 2.0, 0.5, -3.0][r.random_number_below(5) as usize] }
     });
     Polynomial::sum_of_terms(terms.collect())
 }
@@ -60,7 +60,7 @@ fn factored_sums_keep_their_values() {
         let plain: usize = p
             .terms
             .iter()
-            .map(|t| order.printed_length(&[Item::from_monomial(t.coefficient, t.monomial)]))
+            .map(|t| order.printed_length(&[PrintedTerm::from_monomial(t.coefficient, t.monomial)]))
             .sum();
         for scope in [FactorScope::All, FactorScope::Kinds, FactorScope::None] {
             let found = items_of_polynomial(&ring, &order, &p, scope);

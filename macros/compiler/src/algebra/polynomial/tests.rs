@@ -11,7 +11,7 @@ pub fn rank_of_symbol(symbol: Symbol) -> AtomRank {
     if symbol.0 < 3 { AtomRank::Parameter } else { AtomRank::Position }
 }
 
-fn value_of_symbol(symbol: Symbol) -> f64 {
+fn test_number_of_symbol(symbol: Symbol) -> f64 {
     0.37 + 0.61 * f64::from(symbol.0)
 }
 
@@ -19,7 +19,7 @@ fn value_of_symbol(symbol: Symbol) -> f64 {
 pub struct Random(pub u64);
 
 impl Random {
-    pub fn number_below(&mut self, n: u64) -> u64 {
+    pub fn random_number_below(&mut self, n: u64) -> u64 {
         self.0 ^= self.0 << 13;
         self.0 ^= self.0 >> 7;
         self.0 ^= self.0 << 17;
@@ -28,18 +28,18 @@ impl Random {
 }
 
 fn random_expression<'g>(graph: &'g Graph, r: &mut Random, depth: u32, functions: bool) -> Expr<'g> {
-    let pick = if depth == 0 { 0 } else { r.number_below(if functions { 12 } else { 9 }) };
+    let pick = if depth == 0 { 0 } else { r.random_number_below(if functions { 12 } else { 9 }) };
     let random_subexpression = |r: &mut Random| random_expression(graph, r, depth - 1, functions);
     match pick {
-        0 if r.number_below(4) == 0 => graph.num(r.number_below(9) as f64 - 4.0),
-        0 => graph.symbol(Symbol(r.number_below(6) as u32)),
+        0 if r.random_number_below(4) == 0 => graph.num(r.random_number_below(9) as f64 - 4.0),
+        0 => graph.symbol(Symbol(r.random_number_below(6) as u32)),
         1 | 2 => random_subexpression(r) + random_subexpression(r),
         3 | 4 => random_subexpression(r) - random_subexpression(r),
         5 | 6 => random_subexpression(r) * random_subexpression(r),
         7 | 8 => {
-            let angle = graph.symbol(Symbol(3 + r.number_below(2) as u32));
-            let angle = if r.number_below(3) == 0 { angle - graph.symbol(Symbol(5)) } else { angle };
-            if r.number_below(2) == 0 { angle.sin() } else { angle.cos() }
+            let angle = graph.symbol(Symbol(3 + r.random_number_below(2) as u32));
+            let angle = if r.random_number_below(3) == 0 { angle - graph.symbol(Symbol(5)) } else { angle };
+            if r.random_number_below(2) == 0 { angle.sin() } else { angle.cos() }
         }
         9 => random_subexpression(r) / (random_subexpression(r).square() + graph.one()),
         10 => (random_subexpression(r).square() + graph.one()).sqrt(),
@@ -58,13 +58,17 @@ fn normal_forms_keep_values_of_random_expressions() {
     for _ in 0..400 {
         let graph = Graph::new();
         let e = random_expression(&graph, &mut r, 5, true);
-        let expected = eval_one(e, &value_of_symbol);
+        let expected = eval_one(e, &test_number_of_symbol);
         let mut normal = NormalFormCache::new(&graph, rank_of_symbol);
         let Some(p) = normal.normal_form(e) else { continue };
-        assert_near(normal.ring.evaluate_polynomial(&p, &value_of_symbol), expected, &format!("{e:?}"));
+        assert_near(normal.ring.evaluate_polynomial(&p, &test_number_of_symbol), expected, &format!("{e:?}"));
         let Some(short) = simplify_trigonometry(&mut normal.ring, &p) else { continue };
         assert!(short.terms.len() <= p.terms.len());
-        assert_near(normal.ring.evaluate_polynomial(&short, &value_of_symbol), expected, &format!("{e:?}"));
+        assert_near(
+            normal.ring.evaluate_polynomial(&short, &test_number_of_symbol),
+            expected,
+            &format!("{e:?}"),
+        );
         found += 1;
     }
     assert!(found > 300, "only {found} of 400 are within the limits");
@@ -95,7 +99,7 @@ fn assert_same_polynomial(a: &Polynomial, b: &Polynomial) {
     }
 }
 
-fn assert_zero(build: impl Fn(&Graph, [Expr<'_>; 3]) -> Vec<usize>) {
+fn assert_term_counts_are_zero(build: impl Fn(&Graph, [Expr<'_>; 3]) -> Vec<usize>) {
     let graph = Graph::new();
     let symbols = [3, 4, 5].map(|k| graph.symbol(Symbol(k)));
     assert!(build(&graph, symbols).iter().all(|terms| *terms == 0));
@@ -103,7 +107,7 @@ fn assert_zero(build: impl Fn(&Graph, [Expr<'_>; 3]) -> Vec<usize>) {
 
 #[test]
 fn algebraic_identities_reduce_to_zero() {
-    assert_zero(|graph, [x, y, z]| {
+    assert_term_counts_are_zero(|graph, [x, y, z]| {
         let zeros = [
             (x + y) * (x - y) - (x.square() - y.square()),
             (x + y).pow(graph.num(3.0)) - (x * x * x + x * x * y * 3.0 + x * y * y * 3.0 + y * y * y),

@@ -61,7 +61,7 @@ impl<'g> FrameChoice<'g> {
             size_of_first_candidates(&self.masses, &self.recursions).filter(|own| *own > COMPARED_OPERATIONS);
         own.is_none_or(|own| {
             let [masses, recursions] = [
-                variants.mass_matrices().take(1).collect(),
+                variants.mass_matrix_candidates().take(1).collect(),
                 variants.inverse_dynamics_candidates(true).take(1).collect::<Vec<_>>(),
             ];
             size_of_first_candidates(&masses, &recursions)
@@ -70,7 +70,7 @@ impl<'g> FrameChoice<'g> {
     }
 
     fn new(variants: Variants<'g>) -> FrameChoice<'g> {
-        let masses: Vec<Candidate<'g>> = variants.mass_matrices().collect();
+        let masses: Vec<Candidate<'g>> = variants.mass_matrix_candidates().collect();
         let recursions: Vec<Candidate<'g>> = variants.inverse_dynamics_candidates(true).collect();
         let size = smallest_candidate_size(&masses).unwrap_or_default()
             + smallest_candidate_size(&recursions).unwrap_or_default();

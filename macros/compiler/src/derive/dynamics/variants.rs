@@ -5,7 +5,7 @@ use crate::derive::specialisation::{Candidate, ParameterSpecialisation};
 use crate::expr::Expr;
 use crate::kinematics::Joint;
 use crate::lower::Program;
-use crate::mechanics::derivatives::Factor;
+use crate::mechanics::derivatives::MatrixFactorisation;
 use crate::mechanics::passive::passive_forces;
 use crate::mechanics::speeds::{ResultKind, SpeedTransformation};
 use crate::mechanics::{self, aba, added_mass, constraints, crba, friction, ldl, massless, rnea};
@@ -57,14 +57,14 @@ impl<'g> Variants<'g> {
             }
             _ => Vec::new(),
         };
-        let limbs_of_variant = |variant: &Variant<'g>| {
+        let vectorised_mechanism_of_variant = |variant: &Variant<'g>| {
             let passive_forces_of_variant = || passive_forces(&variant.model, true);
             Some((
                 VectorisedMechanism::new(&variant.model, &joints, &groups, passive_forces_of_variant)?,
                 variant.for_inverse_dynamics,
             ))
         };
-        let limbs = all.iter().filter_map(limbs_of_variant).collect();
+        let limbs = all.iter().filter_map(vectorised_mechanism_of_variant).collect();
         Variants { all, joints, specialisation, speeds, limbs, bias: CheapestBias::default() }
     }
 
@@ -89,7 +89,7 @@ impl<'g> Variants<'g> {
 
     /// Returns the variants with identical limbs in SIMD lanes, except variants that serve inverse dynamics
     /// only.
-    pub fn limbs_for_all_functions(&self) -> impl Iterator<Item = &VectorisedMechanism<'g>> {
+    pub fn vectorised_mechanisms_for_all_functions(&self) -> impl Iterator<Item = &VectorisedMechanism<'g>> {
         self.limbs.iter().filter(|(_, for_inverse_dynamics)| !for_inverse_dynamics).map(|(limbs, _)| limbs)
     }
 
@@ -132,7 +132,7 @@ impl<'g> Variants<'g> {
         smallest.map_or_else(Program::default, |list| self.specialisation.lower_to_program(&list.outputs))
     }
 
-    pub fn mass_matrices(&self) -> impl Iterator<Item = Candidate<'g>> {
+    pub fn mass_matrix_candidates(&self) -> impl Iterator<Item = Candidate<'g>> {
         self.candidate_outputs(ResultKind::Metric, |model| crba::mass_matrix(model, &self.joints).concat())
     }
 
@@ -168,7 +168,7 @@ impl<'g> Variants<'g> {
     }
 
     /// Returns the outputs of forward dynamics by the articulated-body algorithm.
-    pub fn articulated_body_candidates(&self) -> Vec<Candidate<'g>> {
+    pub fn articulated_forward_dynamics_candidates(&self) -> Vec<Candidate<'g>> {
         let Some(bias) = self.all.get(self.bias.variant).map(|variant| &variant.model) else {
             return Vec::new();
         };
@@ -186,18 +186,22 @@ impl<'g> Variants<'g> {
     pub fn articulated_dynamics_in_lanes(&self) -> Vec<Vec<Expr<'g>>> {
         let bias = self.bias.simd.as_ref().and_then(|(k, _)| self.limbs.get(*k));
         let Some((bias, _)) = bias else { return Vec::new() };
-        self.limbs_for_all_functions().filter_map(|limbs| limb_lanes::forward_dynamics(limbs, bias)).collect()
+        self.vectorised_mechanisms_for_all_functions()
+            .filter_map(|limbs| limb_lanes::forward_dynamics(limbs, bias))
+            .collect()
     }
 
     /// Returns forward dynamics by factorisation of the mass matrix.
-    pub fn factorisation_candidates(&self) -> Vec<Candidate<'g>> {
+    pub fn factorised_forward_dynamics_candidates(&self) -> Vec<Candidate<'g>> {
         let r = self.unbalanced_forces();
         let solve_for_accelerations = |model: &Model<'g>| {
             let mass = crba::mass_matrix(model, &self.joints);
             match model.acceleration_forces.is_empty() {
                 true => ldl::solve_symmetric(mass, r.clone(), &self.joints),
-                false => Factor::new(&added_mass::effective_mass_matrix(model, &mass), &self.joints)
-                    .solve_factored(r.clone()),
+                false => {
+                    MatrixFactorisation::new(&added_mass::effective_mass_matrix(model, &mass), &self.joints)
+                        .solve_factored(r.clone())
+                }
             }
         };
         self.candidate_outputs(ResultKind::Accelerations(0), solve_for_accelerations).collect()
@@ -214,7 +218,7 @@ impl<'g> Variants<'g> {
 }
 
 /// Returns the number of multipliers whose individual accelerations are outputs.
-fn count_of_multiplier_accelerations(model: &Model<'_>) -> usize {
+fn multiplier_acceleration_column_count(model: &Model<'_>) -> usize {
     if model.is_overconstrained() { model.constraints.len() } else { 0 }
 }
 
@@ -227,8 +231,8 @@ impl<'g> Variants<'g> {
             return self.friction_solution_program(ResultKind::Accelerations(0), &force, &biases);
         }
         let Some(pivots) = &variant.model.dependent else {
-            let answers = count_of_multiplier_accelerations(&variant.model);
-            return self.multipliers_program(ResultKind::Accelerations(answers), &force, &biases);
+            let answers = multiplier_acceleration_column_count(&variant.model);
+            return self.multiplier_solution_program(ResultKind::Accelerations(answers), &force, &biases);
         };
         self.cheapest_program(ResultKind::Accelerations(0), |model| {
             let mass = crba::mass_matrix(model, &self.joints);
@@ -240,8 +244,8 @@ impl<'g> Variants<'g> {
     pub fn constraint_response(&self) -> Program {
         let [variant, ..] = self.all.as_slice() else { return Program::default() };
         let (force, bias) = constraints::force_and_bias_symbols(&variant.model);
-        self.multipliers_program(
-            ResultKind::Answers(count_of_multiplier_accelerations(&variant.model)),
+        self.multiplier_solution_program(
+            ResultKind::Answers(multiplier_acceleration_column_count(&variant.model)),
             &force,
             &bias,
         )
@@ -254,7 +258,12 @@ impl<'g> Variants<'g> {
         self.friction_solution_program(ResultKind::Answers(0), &force, &bias)
     }
 
-    fn multipliers_program(&self, role: ResultKind, force: &[Expr<'g>], bias: &[Expr<'g>]) -> Program {
+    fn multiplier_solution_program(
+        &self,
+        role: ResultKind,
+        force: &[Expr<'g>],
+        bias: &[Expr<'g>],
+    ) -> Program {
         self.cheapest_program(role, |model| {
             let rows = constraints::jacobian(model);
             if model.is_overconstrained() {

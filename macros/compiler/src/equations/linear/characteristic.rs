@@ -3,7 +3,7 @@
 
 use super::parts::{EquilibriumCoefficients, rank_of_symbol};
 use super::rest::vanishes_identically;
-use crate::algebra::factor::remove_noise;
+use crate::algebra::factor::remove_rounding_noise;
 use crate::algebra::normal::NormalFormCache;
 use crate::algebra::polynomial::{Polynomial, Ring};
 use crate::algebra::trigonometry::simplify_trigonometry;
@@ -66,7 +66,7 @@ pub fn characteristic_polynomial<'g>(
     let determinant = determinant_of_polynomials(&matrix, &mut normal.ring)?;
     let mut coefficients = Vec::new();
     for p in determinant {
-        let p = remove_noise(&normal.ring, &p);
+        let p = remove_rounding_noise(&normal.ring, &p);
         let p = simplify_trigonometry(&mut normal.ring, &p)?;
         coefficients.push(if vanishes_identically(&normal.ring, &p) { Polynomial::default() } else { p });
     }
@@ -110,13 +110,15 @@ fn is_conservative<'g>(
     {
         return Some(false);
     }
-    let mut zero = |e: Expr<'g>| -> Option<bool> {
+    let mut is_identically_zero = |e: Expr<'g>| -> Option<bool> {
         let p = normal.normal_form(e)?;
         Some(vanishes_identically(&normal.ring, &p))
     };
     for i in 0..nv {
         for j in 0..nv {
-            if !zero(damping[i][j])? || (j < i && !zero(stiffness[i][j] - stiffness[j][i])?) {
+            if !is_identically_zero(damping[i][j])?
+                || (j < i && !is_identically_zero(stiffness[i][j] - stiffness[j][i])?)
+            {
                 return Some(false);
             }
         }

@@ -31,7 +31,7 @@ pub struct EquilibriumCoefficients<'g> {
 
 /// Returns the expression behind each row of the linear equations: force balances, residuals or rates of the
 /// constraints, and negative rates of the states.
-pub fn linear_equation_expressions<'g>(
+pub fn expressions_to_linearise<'g>(
     model: &Model<'g>,
     balance: &[Expr<'g>],
     at: &Equilibrium<'g>,

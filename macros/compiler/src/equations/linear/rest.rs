@@ -3,9 +3,9 @@
 //! numerically at random parameters.
 
 use super::parts::{
-    EquilibriumCoefficients, deviation_symbol, linear_equation_expressions as linear_rows, multiplier_symbol,
+    EquilibriumCoefficients, deviation_symbol, expressions_to_linearise as linear_rows, multiplier_symbol,
 };
-use crate::algebra::factor::remove_noise;
+use crate::algebra::factor::remove_rounding_noise;
 use crate::algebra::normal::NormalFormCache;
 use crate::algebra::polynomial::{Polynomial, Ring};
 use crate::algebra::trigonometry::simplify_trigonometry;
@@ -68,7 +68,7 @@ impl<'g> EquilibriumValues<'g> {
     pub fn nonzero_rest_values(&self, model: &Model<'g>, at: &Equilibrium<'g>) -> Vec<(Quantity, Expr<'g>)> {
         let nv = model.nv();
         // Identity orientations are not printed.
-        let lasts: Vec<usize> = quaternion_indices(model).map(|first| first + 3).collect();
+        let lasts: Vec<usize> = first_indices_of_quaternions(model).map(|first| first + 3).collect();
         let is_printed_coordinate =
             |k: &usize| !lasts.contains(k) || self.configuration[*k].constant_value() != Some(1.0);
         let all = (0..self.configuration.len()).filter(is_printed_coordinate);
@@ -115,7 +115,7 @@ fn find_rest_state<'g>(
     if !model.frictions.is_empty() || model.constraints.iter().any(|c| !c.friction.is_empty()) {
         return Err((format!("dry friction cannot be linearised about `{name}`"), DRY_FRICTION));
     }
-    if let Some(k) = first_non_unit_quaternion(model, &rest, normal) {
+    if let Some(k) = index_of_non_unit_quaternion(model, &rest, normal) {
         return Err((
             format!("the quaternion of `{}` in `{name}` has not the length one", model.configuration[k]),
             "its components are those of a unit quaternion; what is not named is an orientation along the \
@@ -192,12 +192,12 @@ fn check_persistence<'g>(
 }
 
 /// Returns the index of the first component of a quaternion whose length is not one, if any.
-fn first_non_unit_quaternion<'g>(
+fn index_of_non_unit_quaternion<'g>(
     model: &Model<'g>,
     rest: &EquilibriumValues<'g>,
     normal: &mut NormalFormCache<'g>,
 ) -> Option<usize> {
-    quaternion_indices(model).find(|q| {
+    first_indices_of_quaternions(model).find(|q| {
         let components = &rest.configuration[*q..q + 4];
         let length = components.iter().fold(model.graph.zero(), |sum, c| sum + c.square());
         check_zero(length - model.graph.one(), normal, model).is_err()
@@ -205,13 +205,13 @@ fn first_non_unit_quaternion<'g>(
 }
 
 /// Returns the indices of the first components of all quaternions.
-fn quaternion_indices(model: &Model<'_>) -> impl Iterator<Item = usize> {
+fn first_indices_of_quaternions(model: &Model<'_>) -> impl Iterator<Item = usize> {
     model.charts.iter().filter_map(Chart::first_quaternion_index).map(|first| first.0)
 }
 
 /// Checks that an expression of the parameters is always zero. The error is the nonzero remainder as text.
 fn check_zero<'g>(e: Expr<'g>, normal: &mut NormalFormCache<'g>, model: &Model<'g>) -> Result<(), String> {
-    let p = normal.normal_form(e).map(|p| remove_noise(&normal.ring, &p));
+    let p = normal.normal_form(e).map(|p| remove_rounding_noise(&normal.ring, &p));
     let Some(p) = p.and_then(|p| simplify_trigonometry(&mut normal.ring, &p)) else {
         let tape = Tape::new(&[e]);
         let zero =

@@ -8,7 +8,7 @@
 use super::characteristic::CharacteristicPolynomial;
 use super::parts::ROOT;
 use super::rest::{random_parameter, values_at_random_parameters, vanishes_identically};
-use crate::algebra::normal::inverse;
+use crate::algebra::normal::inverse_of_polynomial;
 use crate::algebra::polynomial::{Atom, Monomial, Polynomial, Ring, Term};
 use crate::expr::{Function, Symbol};
 
@@ -111,7 +111,7 @@ fn divide_by_common_monomial(ring: &Ring, coefficients: &mut [Polynomial], sign:
 
 /// Returns the frequency of an undamped oscillation, `sqrt(last / first)`.
 fn natural_frequency(last: &Polynomial, first: &Polynomial, ring: &mut Ring) -> Option<Polynomial> {
-    let inverse = inverse(ring, first)?;
+    let inverse = inverse_of_polynomial(ring, first)?;
     let square = ring.multiply_and_reduce(last, &inverse)?;
     if let [Term { monomial: Monomial::ONE, coefficient }] = square.terms.as_slice() {
         return Some(Polynomial::from_number(coefficient.sqrt()));
@@ -191,18 +191,21 @@ fn oscillation_conditions(
 
 /// Returns the discriminant of a quadratic or cubic polynomial, `None` for other degrees.
 fn polynomial_discriminant(c: &[Polynomial], ring: &mut Ring) -> Option<Polynomial> {
-    let mut product = |factor: f64, parts: &[usize]| {
+    let mut scaled_product_of_coefficients = |factor: f64, parts: &[usize]| {
         let one = Polynomial::from_number(factor);
         parts.iter().try_fold(one, |product, k| ring.multiply_and_reduce(&product, &c[*k]))
     };
     let terms = match c.len() {
-        3 => vec![product(1.0, &[1, 1])?, product(-4.0, &[0, 2])?],
+        3 => vec![
+            scaled_product_of_coefficients(1.0, &[1, 1])?,
+            scaled_product_of_coefficients(-4.0, &[0, 2])?,
+        ],
         4 => vec![
-            product(18.0, &[0, 1, 2, 3])?,
-            product(-4.0, &[2, 2, 2, 0])?,
-            product(1.0, &[1, 1, 2, 2])?,
-            product(-4.0, &[1, 1, 1, 3])?,
-            product(-27.0, &[0, 0, 3, 3])?,
+            scaled_product_of_coefficients(18.0, &[0, 1, 2, 3])?,
+            scaled_product_of_coefficients(-4.0, &[2, 2, 2, 0])?,
+            scaled_product_of_coefficients(1.0, &[1, 1, 2, 2])?,
+            scaled_product_of_coefficients(-4.0, &[1, 1, 1, 3])?,
+            scaled_product_of_coefficients(-27.0, &[0, 0, 3, 3])?,
         ],
         _ => return None,
     };

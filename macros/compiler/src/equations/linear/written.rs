@@ -115,7 +115,7 @@ impl LinearLines {
         let sides = linear.motion.iter().zip(&linear.forces);
         let values = linear.values.iter();
         let stability = linear.stability.as_ref();
-        let stability_polynomial_text = |stability: &Stability| {
+        let characteristic_polynomial_text = |stability: &Stability| {
             Some(
                 PolynomialWriter::new_with_style(&stability.ring, style)
                     .format_linear_form(&characteristic_polynomial_in_root(stability)?),
@@ -137,9 +137,9 @@ impl LinearLines {
                 .map(|(a, b)| (writer.format_linear_form(a), writer.format_linear_form(b)))
                 .collect(),
             values: values
-                .map(|(what, p)| (style.symbol(what.symbol(), 1), writer.format_polynomial(p)))
+                .map(|(what, p)| (style.format_symbol_power(what.symbol(), 1), writer.format_polynomial(p)))
                 .collect(),
-            polynomial: stability.and_then(stability_polynomial_text),
+            polynomial: stability.and_then(characteristic_polynomial_text),
             frequency,
             conditions: stability.map(format_stability_conditions).unwrap_or_default(),
         }
@@ -171,26 +171,32 @@ pub fn format_linear_equations(
 ) -> PrintedEquations {
     let words = SymbolNames::new(model, at);
     let primed_name = |symbol| name_with_primes(words.name_and_derivative_order(symbol));
-    let plain = plain_text(&words, linear, &LinearLines::new(linear, Plain { name: &primed_name }));
+    let plain =
+        plain_text_of_equations(&words, linear, &LinearLines::new(linear, Plain { name: &primed_name }));
     let mut others = words.deviations.clone();
     others.extend([words.root.clone(), words.frequency.clone()]);
     let names = typeset_names_with_extra_names(model, &others);
-    let name_with_dots = |symbol| {
+    let typeset_name_and_dots = |symbol| {
         let (name, dots) = words.name_and_derivative_order(symbol);
-        (names.get(&name), dots)
+        (names.typeset_name(&name), dots)
     };
-    let lines = LinearLines::new(linear, Latex { name: &name_with_dots });
-    let spell_in_latex = |word: &str| crate::equations::print::latex::format_name(&names.get(word), 0);
+    let lines = LinearLines::new(linear, Latex { name: &typeset_name_and_dots });
+    let spell_in_latex =
+        |word: &str| crate::equations::print::latex::format_name(&names.typeset_name(word), 0);
     let latex = format_aligned(&printed_equations(&lines, &spell_in_latex(&words.frequency)));
-    let frequency = crate::equations::print::mathml::format_name(&names.get(&words.frequency), 0, 1);
+    let frequency = crate::equations::print::mathml::format_name(&names.typeset_name(&words.frequency), 0, 1);
     let mathml = format_equations_as_html(&printed_equations(
-        &LinearLines::new(linear, MathMl { name: &name_with_dots }),
+        &LinearLines::new(linear, MathMl { name: &typeset_name_and_dots }),
         &frequency,
     ));
     PrintedEquations { plain, latex, mathml }
 }
 
-fn plain_text(words: &SymbolNames<'_, '_>, linear: &LinearisedEquations, lines: &LinearLines) -> String {
+fn plain_text_of_equations(
+    words: &SymbolNames<'_, '_>,
+    linear: &LinearisedEquations,
+    lines: &LinearLines,
+) -> String {
     let wrapped_line = |text: &str| wrap_text(text, WIDTH, "    ") + "\n";
     let values: Vec<String> = lines.values.iter().map(|(name, value)| format!("{name} = {value}")).collect();
     let header = match values.as_slice() {

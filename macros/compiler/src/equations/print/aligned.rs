@@ -83,7 +83,7 @@ fn next_line_start(parts: &[LinePart], from: usize, room: usize, left: usize) ->
 fn split_at_outer_signs(line: &str) -> Vec<LinePart> {
     let mut parts = Vec::new();
     let (mut braces, mut grown, mut depth, mut start, mut at_depth) = (0_usize, 0_usize, 0_usize, 0, 0);
-    let mut push = |start: usize, end: usize, depth: usize| {
+    let mut push_line_part = |start: usize, end: usize, depth: usize| {
         let width = estimate_width(&line[start..end]);
         parts.push(LinePart { end, depth, width });
     };
@@ -98,14 +98,14 @@ fn split_at_outer_signs(line: &str) -> Vec<LinePart> {
             '+' | '-' | '=' if braces == 0 && grown == 0 && at > 0 => {
                 let stands = line[..at].ends_with(' ') && line[at + 1..].starts_with(' ');
                 if stands {
-                    push(start, at, at_depth);
+                    push_line_part(start, at, at_depth);
                     (start, at_depth) = (at, depth);
                 }
             }
             _ => {}
         }
     }
-    push(start, line.len(), at_depth);
+    push_line_part(start, line.len(), at_depth);
     parts
 }
 

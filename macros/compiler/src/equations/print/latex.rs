@@ -1,7 +1,7 @@
 //! Printing of equations for the math mode of LaTeX with `amsmath`.
 
 use super::names::{NameFragment, SymbolName};
-use super::style::{Argument, Number, PrintedFactor, Style};
+use super::style::{PrintedArgument, PrintedFactor, PrintedNumber, Style};
 use crate::expr::node::Symbol;
 
 /// LaTeX style, with names and dots for symbols: `\tfrac{1}{3}\,m\,l^{2}\,\cos\theta`.
@@ -15,15 +15,15 @@ pub struct Latex<'a> {
 const SPACE: &str = "\\,";
 
 impl Style for Latex<'_> {
-    fn symbol(&self, symbol: Symbol, power: u8) -> String {
+    fn format_symbol_power(&self, symbol: Symbol, power: u8) -> String {
         let (name, dots) = (self.name)(symbol);
         format!("{}{}", format_name(&name, dots), format_exponent(power))
     }
 
-    fn number(&self, number: &Number) -> String {
+    fn format_number(&self, number: &PrintedNumber) -> String {
         match number {
-            Number::Fraction(p, q) if *q != 1 => format!("\\tfrac{{{p}}}{{{q}}}"),
-            Number::Pi(p, q, power) => {
+            PrintedNumber::Fraction(p, q) if *q != 1 => format!("\\tfrac{{{p}}}{{{q}}}"),
+            PrintedNumber::Pi(p, q, power) => {
                 let pi = if power.abs() == 2 { "\\pi^{2}" } else { "\\pi" };
                 let coefficient_or_empty = |k: &u32| if *k == 1 { String::new() } else { k.to_string() };
                 match (*power > 0, q) {
@@ -32,23 +32,23 @@ impl Style for Latex<'_> {
                     (false, q) => format!("\\tfrac{{{p}}}{{{}{pi}}}", coefficient_or_empty(q)),
                 }
             }
-            Number::Root(p, q, root) => {
+            PrintedNumber::Root(p, q, root) => {
                 let p = if *p == 1 { String::new() } else { p.to_string() };
                 match q {
                     1 => format!("{p}\\sqrt{{{root}}}"),
                     q => format!("\\tfrac{{{p}\\sqrt{{{root}}}}}{{{q}}}"),
                 }
             }
-            Number::Scientific(digits, power) => format!("{digits}\\times 10^{{{power}}}"),
+            PrintedNumber::Scientific(digits, power) => format!("{digits}\\times 10^{{{power}}}"),
             _ => number.to_string(),
         }
     }
 
-    fn power(&self, sum: &str, power: u8) -> String {
+    fn format_power_of_sum(&self, sum: &str, power: u8) -> String {
         format!("{}{}", put_in_parentheses(sum), format_exponent(power))
     }
 
-    fn call(&self, function: &str, power: u8, arguments: &[Argument]) -> String {
+    fn format_function_call(&self, function: &str, power: u8, arguments: &[PrintedArgument]) -> String {
         let power = format_exponent(power);
         let head = match (function, arguments) {
             ("sqrt", [x]) if power.is_empty() => return format!("\\sqrt{{{}}}", x.text),
@@ -65,7 +65,7 @@ impl Style for Latex<'_> {
             _ => format!("\\operatorname{{{function}}}"),
         };
         // A word gets parentheses: without them it would run into the next word.
-        if let [Argument { text, lone: true }] = arguments
+        if let [PrintedArgument { text, lone: true }] = arguments
             && !["\\mathrm", "\\dot{\\mathrm"].iter().any(|word| text.starts_with(word))
         {
             let letter = text.starts_with(|c: char| c.is_alphanumeric());
@@ -79,14 +79,14 @@ impl Style for Latex<'_> {
         format!("{head}{power}{gap}{arguments}")
     }
 
-    fn product(
+    fn format_quotient_of_products(
         &self,
-        number: Option<Number>,
+        number: Option<PrintedNumber>,
         factors: &[PrintedFactor],
         divisors: &[PrintedFactor],
     ) -> String {
         if divisors.is_empty() {
-            let number = number.map(|n| self.number(&n));
+            let number = number.map(|n| self.format_number(&n));
             return number
                 .into_iter()
                 .chain(factors.iter().map(format_factor))
@@ -94,18 +94,19 @@ impl Style for Latex<'_> {
                 .join(SPACE);
         }
         // A fraction is not placed in the numerator of another one.
-        let small = matches!(&number, Some(Number::Fraction(_, q) | Number::Root(_, q, _)) if *q != 1)
-            || matches!(&number, Some(Number::Pi(_, q, power)) if *q != 1 || *power < 0);
-        let number = number.map(|n| self.number(&n));
+        let small = matches!(&number, Some(PrintedNumber::Fraction(_, q) | PrintedNumber::Root(_, q, _))
+            if *q != 1)
+            || matches!(&number, Some(PrintedNumber::Pi(_, q, power)) if *q != 1 || *power < 0);
+        let number = number.map(|n| self.format_number(&n));
         let (before, above) = if small { (number, None) } else { (None, number) };
-        let above = fraction_side(above.into_iter(), factors);
-        let fraction = format!("\\frac{{{above}}}{{{}}}", fraction_side(std::iter::empty(), divisors));
+        let above = format_fraction_side(above.into_iter(), factors);
+        let fraction = format!("\\frac{{{above}}}{{{}}}", format_fraction_side(std::iter::empty(), divisors));
         before.map_or(fraction.clone(), |number| format!("{number}{SPACE}{fraction}"))
     }
 }
 
 /// Formats the numerator or denominator of a fraction.
-fn fraction_side(first: impl Iterator<Item = String>, factors: &[PrintedFactor]) -> String {
+fn format_fraction_side(first: impl Iterator<Item = String>, factors: &[PrintedFactor]) -> String {
     let first: Vec<String> = first.collect();
     match (first.as_slice(), factors) {
         ([], []) => "1".to_string(),

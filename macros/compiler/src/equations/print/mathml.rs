@@ -2,7 +2,7 @@
 //! a sum is therefore a formula of its own, with line breaks between them.
 
 use super::names::{NameFragment, SymbolName};
-use super::style::{Argument, Number, PrintedFactor, Style};
+use super::style::{PrintedArgument, PrintedFactor, PrintedNumber, Style};
 use crate::expr::node::Symbol;
 
 /// MathML style, with names and dots for symbols.
@@ -93,12 +93,12 @@ fn format_fraction(above: &str, below: &str) -> String {
 }
 
 impl Style for MathMl<'_> {
-    fn symbol(&self, symbol: Symbol, power: u8) -> String {
+    fn format_symbol_power(&self, symbol: Symbol, power: u8) -> String {
         let (name, dots) = (self.name)(symbol);
         format_name(&name, dots, power)
     }
 
-    fn number(&self, number: &Number) -> String {
+    fn format_number(&self, number: &PrintedNumber) -> String {
         let number_element = |n: &dyn std::fmt::Display| format!("<mn>{n}</mn>");
         let multiple_of_term =
             |k: &u32, of: String| if *k == 1 { of } else { format!("<mrow><mn>{k}</mn>{of}</mrow>") };
@@ -107,19 +107,19 @@ impl Style for MathMl<'_> {
             q => format!("<mfrac>{above}<mn>{q}</mn></mfrac>"),
         };
         match number {
-            Number::Fraction(p, q) => fraction_element(number_element(p), q),
-            Number::Pi(p, q, power) => {
+            PrintedNumber::Fraction(p, q) => fraction_element(number_element(p), q),
+            PrintedNumber::Pi(p, q, power) => {
                 let pi = raised_to_power("<mi>π</mi>", power.unsigned_abs());
                 match *power > 0 {
                     true => fraction_element(multiple_of_term(p, pi), q),
                     false => format!("<mfrac><mn>{p}</mn>{}</mfrac>", multiple_of_term(q, pi)),
                 }
             }
-            Number::Root(p, q, root) => {
+            PrintedNumber::Root(p, q, root) => {
                 fraction_element(multiple_of_term(p, format!("<msqrt><mn>{root}</mn></msqrt>")), q)
             }
-            Number::Decimal(text) => number_element(text),
-            Number::Scientific(text, power) => {
+            PrintedNumber::Decimal(text) => number_element(text),
+            PrintedNumber::Scientific(text, power) => {
                 let sign = if power.starts_with('-') { "<mo>−</mo>" } else { "" };
                 let power = power.trim_start_matches('-');
                 format!(
@@ -129,7 +129,7 @@ impl Style for MathMl<'_> {
         }
     }
 
-    fn sign(&self, first: bool, negative: bool) -> &'static str {
+    fn sign_before_term(&self, first: bool, negative: bool) -> &'static str {
         match (first, negative) {
             (true, false) => "",
             (true, true) => "<mo form=\"prefix\">−</mo>",
@@ -138,11 +138,11 @@ impl Style for MathMl<'_> {
         }
     }
 
-    fn power(&self, sum: &str, power: u8) -> String {
+    fn format_power_of_sum(&self, sum: &str, power: u8) -> String {
         raised_to_power(&wrap_in_row(&put_in_parentheses(sum)), power)
     }
 
-    fn call(&self, function: &str, power: u8, arguments: &[Argument]) -> String {
+    fn format_function_call(&self, function: &str, power: u8, arguments: &[PrintedArgument]) -> String {
         let head = match (function, arguments) {
             ("sqrt", [x]) => {
                 return raised_to_power(&format!("<msqrt>{}</msqrt>", wrap_in_row(&x.text)), power);
@@ -156,29 +156,30 @@ impl Style for MathMl<'_> {
             ("pow", [base, exponent]) => {
                 let base = if base.lone { base.text.clone() } else { put_in_parentheses(&base.text) };
                 let text = format!("<msup>{}{}</msup>", wrap_in_row(&base), wrap_in_row(&exponent.text));
-                return if power == 1 { text } else { self.power(&text, power) };
+                return if power == 1 { text } else { self.format_power_of_sum(&text, power) };
             }
             ("asin" | "acos" | "atan", _) => format!("arc{}", &function[1..]),
             ("signum", _) => "sgn".to_string(),
             _ => function.to_string(),
         };
         let head = raised_to_power(&format!("<mi>{}</mi>", escape_xml(&head)), power);
-        if let [Argument { text, lone: true }] = arguments {
+        if let [PrintedArgument { text, lone: true }] = arguments {
             return format!("{head}{OF}{}", remove_break_marks(text));
         }
         let arguments: Vec<String> = arguments.iter().map(|a| remove_break_marks(&a.text)).collect();
         format!("{head}<mo>\u{2061}</mo><mrow><mo>(</mo>{}<mo>)</mo></mrow>", arguments.join("<mo>,</mo>"))
     }
 
-    fn product(
+    fn format_quotient_of_products(
         &self,
-        number: Option<Number>,
+        number: Option<PrintedNumber>,
         factors: &[PrintedFactor],
         divisors: &[PrintedFactor],
     ) -> String {
-        let small = matches!(&number, Some(Number::Fraction(_, q) | Number::Root(_, q, _)) if *q != 1)
-            || matches!(&number, Some(Number::Pi(_, q, power)) if *q != 1 || *power < 0);
-        let number = number.map(|n| self.number(&n));
+        let small = matches!(&number, Some(PrintedNumber::Fraction(_, q) | PrintedNumber::Root(_, q, _))
+            if *q != 1)
+            || matches!(&number, Some(PrintedNumber::Pi(_, q, power)) if *q != 1 || *power < 0);
+        let number = number.map(|n| self.format_number(&n));
         if divisors.is_empty() {
             return number
                 .into_iter()
@@ -254,14 +255,14 @@ mod tests {
     fn long_sums_in_mathml_break_between_terms() {
         let term = "<mi>alpha</mi><mi>beta</mi>";
         let style = MathMl { name: &|_| (SymbolName::parse("x"), 0) };
-        let sum = [term; 8].join(style.sign(false, false));
+        let sum = [term; 8].join(style.sign_before_term(false, false));
         let break_into_pieces = |text: &str| split_at_breaks(text, &BREAKS);
         assert_eq!(break_into_pieces(&sum).len(), 8);
         let product = format!("<mi>m</mi>{}", put_in_parentheses(&sum));
         assert_eq!(break_into_pieces(&product).len(), 8);
         assert!(break_into_pieces(&product)[0].starts_with("<mi>m</mi><mo stretchy=\"false\">(</mo>"));
         // Short parentheses remain in one piece, and so do fractions.
-        let short = [term; 2].join(style.sign(false, true));
+        let short = [term; 2].join(style.sign_before_term(false, true));
         assert_eq!(
             break_into_pieces(&format!("{}{}", put_in_parentheses(&short), format_fraction(&sum, &sum)))
                 .len(),

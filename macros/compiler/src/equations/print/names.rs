@@ -133,11 +133,11 @@ pub fn name_with_primes((name, dots): (String, u8)) -> String {
 
 /// Typeset names of all symbols. Names that would be indistinguishable after splitting into subscripts are
 /// not split.
-pub struct Names(Vec<(String, SymbolName)>);
+pub struct TypesetNames(Vec<(String, SymbolName)>);
 
-impl Names {
+impl TypesetNames {
     /// Creates the table of typeset names for all names that occur.
-    pub fn new<'a>(texts: impl Iterator<Item = &'a str>) -> Names {
+    pub fn new<'a>(texts: impl Iterator<Item = &'a str>) -> TypesetNames {
         let mut names: Vec<(String, SymbolName)> = Vec::new();
         for text in texts {
             if names.iter().all(|(known, _)| known != text) {
@@ -149,11 +149,11 @@ impl Names {
         for ((text, name), _) in names.iter_mut().zip(ambiguous).filter(|(_, ambiguous)| *ambiguous) {
             *name = SymbolName::single_word_name(text);
         }
-        Names(names)
+        TypesetNames(names)
     }
 
     /// Returns the typeset form of a name in the table.
-    pub fn get(&self, text: &str) -> SymbolName {
+    pub fn typeset_name(&self, text: &str) -> SymbolName {
         self.0
             .iter()
             .find(|(known, _)| known == text)

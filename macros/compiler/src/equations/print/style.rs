@@ -19,15 +19,15 @@ pub struct PrintedEquations {
 /// Output format in which polynomials are printed: text, LaTeX or MathML.
 pub trait Style {
     /// Formats a symbol raised to a power.
-    fn symbol(&self, symbol: Symbol, power: u8) -> String;
+    fn format_symbol_power(&self, symbol: Symbol, power: u8) -> String;
 
     /// Formats the absolute value of a number.
-    fn number(&self, number: &Number) -> String {
+    fn format_number(&self, number: &PrintedNumber) -> String {
         number.to_string()
     }
 
     /// Returns the sign before a term of a sum, empty for a positive first term.
-    fn sign(&self, first: bool, negative: bool) -> &'static str {
+    fn sign_before_term(&self, first: bool, negative: bool) -> &'static str {
         match (first, negative) {
             (true, false) => "",
             (true, true) => "-",
@@ -37,16 +37,16 @@ pub trait Style {
     }
 
     /// Formats a sum in parentheses, raised to a power.
-    fn power(&self, sum: &str, power: u8) -> String;
+    fn format_power_of_sum(&self, sum: &str, power: u8) -> String;
 
     /// Formats a function call raised to a power, given the function's name in the language.
-    fn call(&self, function: &str, power: u8, arguments: &[Argument]) -> String;
+    fn format_function_call(&self, function: &str, power: u8, arguments: &[PrintedArgument]) -> String;
 
     /// Formats the product of a number and factors, divided by `divisors`. `number` is `None` only if there
     /// are factors.
-    fn product(
+    fn format_quotient_of_products(
         &self,
-        number: Option<Number>,
+        number: Option<PrintedNumber>,
         factors: &[PrintedFactor],
         divisors: &[PrintedFactor],
     ) -> String;
@@ -61,7 +61,7 @@ pub enum PrintedFactor {
 }
 
 /// Formatted argument of a printed function.
-pub struct Argument {
+pub struct PrintedArgument {
     /// Text of the argument.
     pub text: String,
     /// True if the argument of the function is a single symbol.
@@ -72,7 +72,7 @@ pub struct Argument {
 /// fractions. Simple multiples of powers of π and of the roots of 2 and 3 are printed as such. All other
 /// numbers are printed as decimals.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Number {
+pub enum PrintedNumber {
     /// Fraction, by its numerator and denominator.
     Fraction(u32, u32),
     /// Numerator and denominator of the coefficient of a power of π, and that power: 1, 2, −1 or −2.
@@ -85,32 +85,32 @@ pub enum Number {
     Scientific(String, String),
 }
 
-impl Number {
+impl PrintedNumber {
     /// The number zero.
-    pub const ZERO: Number = Number::Fraction(0, 1);
+    pub const ZERO: PrintedNumber = PrintedNumber::Fraction(0, 1);
     /// The number one.
-    pub const ONE: Number = Number::Fraction(1, 1);
+    pub const ONE: PrintedNumber = PrintedNumber::Fraction(1, 1);
 
     /// Classifies a positive number: a fraction, multiple of π or multiple of a root if the integers involved
     /// are small, otherwise up to six significant digits.
-    pub fn classify_number(value: f64) -> Number {
+    pub fn classify_number(value: f64) -> PrintedNumber {
         if let Some((p, q)) = fraction_of_number(value) {
-            return Number::Fraction(p, q);
+            return PrintedNumber::Fraction(p, q);
         }
         if let Some((p, q, power)) = multiple_of_pi(value) {
-            return Number::Pi(p, q, power);
+            return PrintedNumber::Pi(p, q, power);
         }
         if let Some((p, q, root)) = multiple_of_root(value) {
-            return Number::Root(p, q, root);
+            return PrintedNumber::Root(p, q, root);
         }
         let exponent = libm::log10(value).floor() as i32;
         if !(-4..9).contains(&exponent) {
             let text = format!("{value:.5e}");
             let (digits, power) = text.split_once('e').unwrap_or((&text, "0"));
-            return Number::Scientific(trim_trailing_zeros(digits).to_string(), power.to_string());
+            return PrintedNumber::Scientific(trim_trailing_zeros(digits).to_string(), power.to_string());
         }
         let decimals = usize::try_from(5 - exponent).unwrap_or(0);
-        Number::Decimal(trim_trailing_zeros(&format!("{value:.decimals$}")).to_string())
+        PrintedNumber::Decimal(trim_trailing_zeros(&format!("{value:.decimals$}")).to_string())
     }
 }
 
@@ -149,12 +149,12 @@ fn trim_trailing_zeros(digits: &str) -> &str {
     if digits.contains('.') { digits.trim_end_matches('0').trim_end_matches('.') } else { digits }
 }
 
-impl fmt::Display for Number {
+impl fmt::Display for PrintedNumber {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Number::Fraction(p, 1) => write!(f, "{p}"),
-            Number::Fraction(p, q) => write!(f, "{p}/{q}"),
-            Number::Pi(p, q, power) => {
+            PrintedNumber::Fraction(p, 1) => write!(f, "{p}"),
+            PrintedNumber::Fraction(p, q) => write!(f, "{p}/{q}"),
+            PrintedNumber::Pi(p, q, power) => {
                 let pi = if power.abs() == 2 { "pi²" } else { "pi" };
                 match (*power > 0, p, q) {
                     (true, 1, 1) => f.write_str(pi),
@@ -165,12 +165,12 @@ impl fmt::Display for Number {
                     (false, p, q) => write!(f, "{p}/({q} {pi})"),
                 }
             }
-            Number::Root(1, 1, root) => write!(f, "sqrt({root})"),
-            Number::Root(1, q, root) => write!(f, "sqrt({root})/{q}"),
-            Number::Root(p, 1, root) => write!(f, "{p} sqrt({root})"),
-            Number::Root(p, q, root) => write!(f, "{p}/{q} sqrt({root})"),
-            Number::Decimal(digits) => f.write_str(digits),
-            Number::Scientific(digits, power) => write!(f, "{digits}e{power}"),
+            PrintedNumber::Root(1, 1, root) => write!(f, "sqrt({root})"),
+            PrintedNumber::Root(1, q, root) => write!(f, "sqrt({root})/{q}"),
+            PrintedNumber::Root(p, 1, root) => write!(f, "{p} sqrt({root})"),
+            PrintedNumber::Root(p, q, root) => write!(f, "{p}/{q} sqrt({root})"),
+            PrintedNumber::Decimal(digits) => f.write_str(digits),
+            PrintedNumber::Scientific(digits, power) => write!(f, "{digits}e{power}"),
         }
     }
 }
@@ -183,22 +183,22 @@ pub struct Plain<'a> {
 }
 
 impl Style for Plain<'_> {
-    fn symbol(&self, symbol: Symbol, power: u8) -> String {
+    fn format_symbol_power(&self, symbol: Symbol, power: u8) -> String {
         format!("{}{}", (self.name)(symbol), format_exponent(power))
     }
 
-    fn power(&self, sum: &str, power: u8) -> String {
+    fn format_power_of_sum(&self, sum: &str, power: u8) -> String {
         format!("({sum}){}", format_exponent(power))
     }
 
-    fn call(&self, function: &str, power: u8, arguments: &[Argument]) -> String {
+    fn format_function_call(&self, function: &str, power: u8, arguments: &[PrintedArgument]) -> String {
         let arguments: Vec<&str> = arguments.iter().map(|a| a.text.as_str()).collect();
         format!("{function}{}({})", format_exponent(power), arguments.join(", "))
     }
 
-    fn product(
+    fn format_quotient_of_products(
         &self,
-        number: Option<Number>,
+        number: Option<PrintedNumber>,
         factors: &[PrintedFactor],
         divisors: &[PrintedFactor],
     ) -> String {

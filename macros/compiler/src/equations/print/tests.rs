@@ -40,7 +40,7 @@ fn numbers_are_printed_as_integers_fractions_or_decimals() {
         (1.5e-6, "1.5e-6"),
         (2.5e12, "2.5e12"),
     ] {
-        assert_eq!(Number::classify_number(value).to_string(), expected);
+        assert_eq!(PrintedNumber::classify_number(value).to_string(), expected);
     }
 }
 
@@ -58,7 +58,7 @@ fn exact_sines_are_printed_as_square_roots() {
         (0.7072, "0.7072"),
         (1.7322, "1.7322"),
     ] {
-        assert_eq!(Number::classify_number(value).to_string(), expected);
+        assert_eq!(PrintedNumber::classify_number(value).to_string(), expected);
     }
     assert_eq!(formatted_latex(|g, [m, ..]| m * g.num(0.5 * two)), r"\tfrac{\sqrt{2}}{2}\,m");
     assert_eq!(formatted_latex(|g, [m, ..]| m * g.num(3.0 * three)), r"3\sqrt{3}\,m");
@@ -85,7 +85,7 @@ fn multiples_of_pi_are_printed_symbolically() {
         (PI / 2.0 - 1e-5, "1.57079"),
         (1.0001 * PI, "3.14191"),
     ] {
-        assert_eq!(Number::classify_number(value).to_string(), expected);
+        assert_eq!(PrintedNumber::classify_number(value).to_string(), expected);
     }
     assert_eq!(formatted_text(|g, [_, k, _, x, ..]| k * (x - g.num(PI / 2.0))), "k (x - pi/2)");
     assert_eq!(formatted_text(|g, [m, k, ..]| m * k * g.num(0.5 / PI)), "1/(2 pi) m k");
@@ -226,8 +226,8 @@ fn latex_names_have_subscripts() {
 /// Names that would be indistinguishable in print are not split.
 #[test]
 fn ambiguous_names_are_not_split_in_print() {
-    let names = names::Names::new(["m1", "m_1", "table.x", "x_table", "m2"].into_iter());
-    let spell_in_latex = |text| super::latex::format_name(&names.get(text), 0);
+    let names = names::TypesetNames::new(["m1", "m_1", "table.x", "x_table", "m2"].into_iter());
+    let spell_in_latex = |text| super::latex::format_name(&names.typeset_name(text), 0);
     assert_eq!(spell_in_latex("m1"), r"\mathrm{m1}");
     assert_eq!(spell_in_latex("m_1"), r"\mathrm{m\_1}");
     assert_eq!(spell_in_latex("table.x"), r"\mathrm{table.x}");

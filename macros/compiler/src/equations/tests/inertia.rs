@@ -15,7 +15,7 @@ const SATELLITE: &str = "struct Satellite { mu: f64, m: f64, a: f64, b: f64, c: 
 /// that the right sides are symbols.
 #[test]
 fn free_body_prints_eulers_equations_under_any_load() {
-    let text = with_model("0 * z", SATELLITE, |model| {
+    let text = call_with_parsed_model("0 * z", SATELLITE, |model| {
         let joints = crate::kinematics::joints_of_model(&model);
         let mass = crba::mass_matrix(&model, &joints);
         assert!(derive(&model, &joints, &mass, None, &Limits::READABLE).is_none());
@@ -23,7 +23,7 @@ fn free_body_prints_eulers_equations_under_any_load() {
         check_values_of_printed_equations(&model, &e);
         crate::equations_as_text(&model)
     });
-    let free = with_model("g * z", FREE, |model| {
+    let free = call_with_parsed_model("g * z", FREE, |model| {
         let mut model = model;
         model.gravity = Vec3([model.graph.zero(); 3]);
         crate::equations_as_text(&model)
@@ -43,7 +43,7 @@ fn free_body_prints_eulers_equations_under_any_load() {
 }
 
 /// Returns the constant `EQUATIONS` of a mechanism.
-fn equations_constant(arguments: &str, item: &str) -> String {
+fn text_of_equations_constant(arguments: &str, item: &str) -> String {
     let emitted = crate::expand(arguments.parse().unwrap(), item.parse().unwrap(), Path::new(""));
     let file = syn::parse_file(&emitted.text).expect("a file");
     let constants = file.items.iter().filter_map(|item| match item {
@@ -62,12 +62,12 @@ fn equations_constant(arguments: &str, item: &str) -> String {
 
 #[test]
 fn omitted_terms_of_equations_are_reported() {
-    let text = equations_constant("gravity = -9.81 * z", SKEW);
+    let text = text_of_equations_constant("gravity = -9.81 * z", SKEW);
     for part in
         ["M(q) v' + h(q, v) = tau", "too many terms to be readable", "`equations = lagrange`", "`kane`"]
     {
         assert!(text.contains(part), "{text}");
     }
-    let text = equations_constant("gravity = -9.81 * z, equations = structure", CART_POLE);
+    let text = text_of_equations_constant("gravity = -9.81 * z, equations = structure", CART_POLE);
     assert!(text.contains("`equations = structure` omits the terms"), "{text}");
 }

@@ -84,7 +84,8 @@ pub(super) fn check_printed_equations(model: &Model<'_>) -> String {
     let (nv, nc) = (native.nv(), native.constraints.len());
     let rows = constraints::jacobian(native);
     let mut all =
-        [lagrange.mass_matrix.concat(), lagrange.bias, forces::generalized_forces(native, &joints)].concat();
+        [lagrange.mass_matrix.concat(), lagrange.bias, forces::generalized_forces_of_inputs(native, &joints)]
+            .concat();
     all.extend(rows.concat());
     all.extend(constraints::constraint_biases(native));
     all.extend(constraints::constraint_velocities(native));
@@ -105,11 +106,11 @@ pub(super) fn check_printed_equations(model: &Model<'_>) -> String {
                 own - (0..nc).map(|i| shares[i] * j[i * nv + c]).sum::<f64>()
             })
             .collect();
-        let value_with_velocities = |s: Symbol| match Quantity::from_symbol(s) {
+        let symbol_value_with_velocities = |s: Symbol| match Quantity::from_symbol(s) {
             Quantity::Velocity(k) => v[k],
             _ => at(s),
         };
-        let values = eval(&all, &value_with_velocities);
+        let values = eval(&all, &symbol_value_with_velocities);
         let (mass, rest) = values.split_at(nv * nv);
         let (bias, rest) = rest.split_at(nv);
         let (tau, rest) = rest.split_at(nv);
@@ -131,14 +132,14 @@ pub(super) fn check_printed_equations(model: &Model<'_>) -> String {
             None => (v, a),
             Some(speeds) => {
                 let velocity_to_speed_matrix: Vec<Expr<'_>> = speeds.velocity_to_speed_matrix().concat();
-                let y = eval(&velocity_to_speed_matrix, &value_with_velocities);
+                let y = eval(&velocity_to_speed_matrix, &symbol_value_with_velocities);
                 let w: Vec<f64> = (0..nv).map(|i| (0..nv).map(|k| y[i * nv + k] * v[k]).sum()).collect();
-                let value_with_replaced_velocities = |s: Symbol| match Quantity::from_symbol(s) {
+                let symbol_value_with_speeds = |s: Symbol| match Quantity::from_symbol(s) {
                     Quantity::Velocity(k) => w[k],
                     _ => at(s),
                 };
                 let still = speeds.without_accelerations(&speeds.accelerations);
-                let change = eval(&still, &value_with_replaced_velocities);
+                let change = eval(&still, &symbol_value_with_speeds);
                 let rates = (0..nv).map(|i| (0..nv).map(|k| y[i * nv + k] * (a[k] - change[k])).sum());
                 let rates: Vec<f64> = rates.collect();
                 (w, rates)
@@ -191,7 +192,7 @@ fn printed_kane_equations_equal_the_dynamics() {
         ("-9.81 * z", ROLLING),
         ("-9.81 * y", CAM),
     ] {
-        with_model(gravity, item, |model| {
+        call_with_parsed_model(gravity, item, |model| {
             let text = check_printed_equations(&model);
             assert!(text.len() < 2500, "{text}");
         });
@@ -202,7 +203,7 @@ fn printed_kane_equations_equal_the_dynamics() {
 /// steer.
 #[test]
 fn sleigh_prints_textbook_equations_in_its_own_speeds() {
-    let text = with_model("-9.81 * z", SLEIGH_IN_SPEEDS, |model| check_printed_equations(&model));
+    let text = call_with_parsed_model("-9.81 * z", SLEIGH_IN_SPEEDS, |model| check_printed_equations(&model));
     let expected = "\
 pose.x' = cos(pose.angle) along
 pose.y' = sin(pose.angle) along
@@ -218,7 +219,7 @@ along and pose.angle' are the independent velocities; from them the others follo
 /// Upright rolling: 3/2 m r² roll'' = drive, 1/4 m r² heading'' = steer.
 #[test]
 fn upright_wheel_prints_textbook_equations() {
-    let text = with_model("-9.81 * z", WHEEL, |model| check_printed_equations(&model));
+    let text = call_with_parsed_model("-9.81 * z", WHEEL, |model| check_printed_equations(&model));
     assert!(text.contains("\n3/2 m r² roll'' = drive\n"), "{text}");
     assert!(text.contains("\n1/4 m r² heading'' = steer\n"), "{text}");
 }

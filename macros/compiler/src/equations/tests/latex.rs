@@ -36,7 +36,7 @@ const COMMANDS: [&str; 27] = [
 const SIGNS: [char; 4] = [',', '!', '_', '\\'];
 
 fn equations_latex(gravity: &str, item: &str) -> String {
-    with_model(gravity, item, |model| crate::equations_latex(&model))
+    call_with_parsed_model(gravity, item, |model| crate::equations_latex(&model))
 }
 
 /// Returns the errors in a LaTeX text: unbalanced braces, unknown commands, `\left` without `\right`, indices
@@ -44,7 +44,7 @@ fn equations_latex(gravity: &str, item: &str) -> String {
 pub(super) fn latex_errors(text: &str) -> Vec<String> {
     let mut faults = Vec::new();
     let mut open: Vec<&str> = Vec::new();
-    let mut close = |open: &mut Vec<&str>, what: &str, at: usize| {
+    let mut close_delimiter = |open: &mut Vec<&str>, what: &str, at: usize| {
         if open.pop() != Some(what) {
             faults.push(format!("closes no {what}: {}", &text[at..]));
         }
@@ -54,9 +54,9 @@ pub(super) fn latex_errors(text: &str) -> Vec<String> {
     while let Some((at, c)) = rest.next() {
         match c {
             '{' => open.push("brace"),
-            '}' => close(&mut open, "brace", at),
+            '}' => close_delimiter(&mut open, "brace", at),
             '(' => open.push("parenthesis"),
-            ')' => close(&mut open, "parenthesis", at),
+            ')' => close_delimiter(&mut open, "parenthesis", at),
             '_' | '^' if rest.peek().is_none_or(|(_, c)| *c != '{') => unknown.push(text[at..].to_string()),
             '\\' => {
                 let length = text[at + 1..].bytes().take_while(u8::is_ascii_alphabetic).count();
@@ -70,7 +70,7 @@ pub(super) fn latex_errors(text: &str) -> Vec<String> {
                     "right" => {
                         // The delimiter after `\right` belongs to it; its own parenthesis is closed first.
                         open.pop();
-                        close(&mut open, "left", at);
+                        close_delimiter(&mut open, "left", at);
                         rest.nth(length);
                         continue;
                     }
@@ -108,7 +108,7 @@ fn latex_of_all_mechanisms_is_well_formed() {
             assert_eq!(latex_errors(&text), [""; 0], "{text}");
             assert!(text.starts_with("\\begin{aligned}\n& \\mathcal{L} = "), "{text}");
             assert!(text.ends_with("\n\\end{aligned}\n"), "{text}");
-            let plain = with_model(&gravity, item, |model| crate::equations_as_text(&model));
+            let plain = call_with_parsed_model(&gravity, item, |model| crate::equations_as_text(&model));
             let count_occurrences = |text: &str, sign: &str| text.matches(sign).count();
             assert_eq!(count_occurrences(&text, " = "), count_occurrences(&plain, " = "), "{text}");
             let lines = count_occurrences(&text, "\n& ") - count_occurrences(&text, "\n& \\quad");

@@ -5,19 +5,19 @@ use super::*;
 
 /// Calls `f` with the linear equations of every equilibrium of a struct, as polynomials, plain text and
 /// LaTeX.
-fn visit_linear_equations(
+fn call_for_each_linearisation(
     gravity: &str,
     item: &str,
     f: impl for<'g> Fn(&Model<'g>, &LinearisedEquations, &str, &str),
 ) {
-    with_model(gravity, item, |model| {
+    call_with_parsed_model(gravity, item, |model| {
         let joints = crate::kinematics::joints_of_model(&model);
         let mass = crba::mass_matrix(&model, &joints);
         assert!(!model.equilibria.is_empty());
         for at in &model.equilibria {
             let mut cx = Diagnostics::new();
             let found = linear::derive_linear_equations(&model, &joints, &mass, at, &mut cx);
-            let found = found.unwrap_or_else(|| panic!("{:?}", cx.messages()));
+            let found = found.unwrap_or_else(|| panic!("{:?}", cx.full_message_texts()));
             let written = linear::format_linear_equations(&model, at, &found);
             assert_eq!(latex::latex_errors(&written.latex), [""; 0], "{}", written.latex);
             f(&model, &found, &written.plain, &written.latex);
@@ -33,10 +33,12 @@ fn check_linear_rows(model: &Model<'_>, found: &LinearisedEquations) {
     let states = at.states.len();
     let joints = crate::kinematics::joints_of_model(model);
     let lagrange = lagrange::derive(model, &joints);
-    let parameter_value = |s: Symbol| 0.4 + 1.3 * f64::from(s.0 % 7);
-    let value_at_rest = |k: &Expr<'_>| crate::expr::eval::eval_one(*k, &parameter_value);
-    let (q, u): (Vec<f64>, Vec<f64>) =
-        (at.configuration.iter().map(value_at_rest).collect(), at.inputs.iter().map(value_at_rest).collect());
+    let test_number_of_parameter = |s: Symbol| 0.4 + 1.3 * f64::from(s.0 % 7);
+    let value_at_test_parameters = |k: &Expr<'_>| crate::expr::eval::eval_one(*k, &test_number_of_parameter);
+    let (q, u): (Vec<f64>, Vec<f64>) = (
+        at.configuration.iter().map(value_at_test_parameters).collect(),
+        at.inputs.iter().map(value_at_test_parameters).collect(),
+    );
     // Lagrange's equations of this reference have no multipliers: their forces, and their geometric
     // stiffness, are omitted.
     let right = right_sides(model, &joints);
@@ -50,7 +52,7 @@ fn check_linear_rows(model: &Model<'_>, found: &LinearisedEquations) {
             Quantity::Input(k) => u[k],
             Quantity::Given(..) | Quantity::Time => 0.0,
             Quantity::Parameter(k) if at.states.first().is_some_and(|s| s.parameter == k) => x,
-            _ => parameter_value(s),
+            _ => test_number_of_parameter(s),
         })
     };
     let h = 1e-4;
@@ -65,11 +67,11 @@ fn check_linear_rows(model: &Model<'_>, found: &LinearisedEquations) {
     };
     let still = vec![0.0; nv];
     let coefficients_of_quantity = |what: Quantity, sides: &[Polynomial]| -> Vec<f64> {
-        let value_for_unit_quantity = |s: Symbol| match Quantity::from_symbol(s) {
-            Quantity::Parameter(_) => parameter_value(s),
+        let symbol_value_for_unit_quantity = |s: Symbol| match Quantity::from_symbol(s) {
+            Quantity::Parameter(_) => test_number_of_parameter(s),
             _ => f64::from(u8::from(s == what.symbol())),
         };
-        sides.iter().map(|p| found.ring.evaluate_polynomial(p, &value_for_unit_quantity)).collect()
+        sides.iter().map(|p| found.ring.evaluate_polynomial(p, &symbol_value_for_unit_quantity)).collect()
     };
     for k in 0..nv {
         // All coordinates are plain here.
@@ -130,7 +132,7 @@ const LAG: &str = "struct Lag { m: f64, k: f64, lag: f64, gain: f64,
 fn pendulum_linearises_to_its_natural_frequency() {
     let pendulum_with_equilibrium = |equilibrium: &str| PENDULUM.replace("EQUILIBRIUM", equilibrium);
     let assert_lines_contained = |equilibrium: &str, lines: &'static [&'static str]| {
-        visit_linear_equations(
+        call_for_each_linearisation(
             "-g * y",
             &pendulum_with_equilibrium(equilibrium),
             |model, found, plain, _| {
@@ -171,11 +173,11 @@ fn pendulum_linearises_to_its_natural_frequency() {
 fn linear_equations_are_derivatives_of_the_dynamics() {
     for (gravity, item) in [("-7 * y", DOUBLE_PENDULUM), ("-7 * y", CART_POLE), ("-7 * z", SPHERICAL)] {
         let item = item.trim_end().trim_end_matches('}').to_string() + "#[equilibrium] rest: Equilibrium }";
-        visit_linear_equations(gravity, &item.replace(" g: f64,", " _g: f64,"), |model, found, _, _| {
+        call_for_each_linearisation(gravity, &item.replace(" g: f64,", " _g: f64,"), |model, found, _, _| {
             check_linear_rows(model, found);
         });
     }
-    visit_linear_equations("-9.81 * z", LAG, |model, found, plain, _| {
+    call_for_each_linearisation("-9.81 * z", LAG, |model, found, plain, _| {
         check_linear_rows(model, found);
         assert!(plain.contains("power' + (gain rail + power)/lag = 0\n"), "{plain}");
     });
@@ -191,7 +193,7 @@ fn particle_on_a_wire_has_geometric_stiffness() {
         #[constraint(place.x * place.x + place.y * place.y = l * l)] wire: Holonomic,
         #[equilibrium(place.y = -l)] low: Equilibrium,
         #[equilibrium(place.y = l)] high: Equilibrium }";
-    visit_linear_equations("-g * y", item, |_, _, plain, _| {
+    call_for_each_linearisation("-g * y", item, |_, _, plain, _| {
         let low = plain.starts_with("low");
         let expected: &[&str] = match low {
             true => &[
@@ -216,7 +218,7 @@ fn orientation_deviations_are_small_rotations() {
         #[body(mass = m, com = -l * z, inertia = diagonal(a, a, c))] bob: Body,
         #[joint(ground -> bob)] tip: Ball,
         #[equilibrium] down: Equilibrium }";
-    visit_linear_equations("-g * z", item, |_, _, plain, latex| {
+    call_for_each_linearisation("-g * z", item, |_, _, plain, latex| {
         for line in [
             "(m l² + a) tip.rx'' + m g l tip.rx = 0\n",
             "c tip.rz'' = 0\n",
@@ -238,7 +240,7 @@ fn bead_on_a_spinning_hoop_is_in_relative_equilibrium() {
         #[particle(mass = m, at = radius * (sin(theta) * hoop.x - cos(theta) * hoop.z))] bead: Particle,
         #[equilibrium] bottom: Equilibrium,
         #[equilibrium(theta = acos(g / (spin * spin * radius)))] side: Equilibrium }";
-    visit_linear_equations("-g * z", item, |_, _, plain, _| {
+    call_for_each_linearisation("-g * z", item, |_, _, plain, _| {
         let expected = match plain.starts_with("bottom") {
             true => ["omega = sqrt(g/radius - spin²)\n", "    g - radius spin² > 0\n"],
             false => ["side: theta = acos(g/(radius spin²));", "    -g² + radius² spin⁴ > 0\n"],
@@ -259,7 +261,7 @@ fn skate_edge_leaves_the_lateral_position_free() {
         #[energy(c / 2 * pose.angle * pose.angle)] coil: Potential,
         #[constraint(rate(pose.x) * sin(pose.angle) - rate(pose.y) * cos(pose.angle) = 0)] edge: Nonholonomic,
         #[equilibrium] rest: Equilibrium }";
-    visit_linear_equations("0 * x", item, |_, _, plain, _| {
+    call_for_each_linearisation("0 * x", item, |_, _, plain, _| {
         for line in [
             "m pose.x'' + k pose.x = 0\n",
             "m pose.y'' = -lambda1\n",
@@ -290,7 +292,7 @@ fn polynomials_of_high_degree_are_printed_completely() {
             "struct Three {{ k: f64, b: f64, {} {states} #[equilibrium] rest: Equilibrium }}",
             oscillators.concat()
         );
-        visit_linear_equations("0 * x", &item, |_, found, plain, _| {
+        call_for_each_linearisation("0 * x", &item, |_, found, plain, _| {
             let found = found.stability.as_ref().map(|stability| stability.coefficients.len() - 1);
             assert_eq!(found, degree, "{plain}");
             assert_eq!(plain.contains("s⁷"), degree.is_some(), "{plain}");

@@ -9,7 +9,7 @@ fn element_to_text(node: Node<'_, '_>) -> String {
     let children: Vec<Node<'_, '_>> = node.children().filter(Node::is_element).collect();
     let own_text = || node.text().unwrap_or("").to_string();
     let child_text = |k: usize| element_to_text(children[k]);
-    let subscript_with_dots = |index: String| index.replace(',', ".");
+    let replace_commas_by_dots = |index: String| index.replace(',', ".");
     match node.tag_name().name() {
         "math" | "mrow" => concatenate_elements(&children),
         "mn" | "mi" => own_text(),
@@ -24,12 +24,12 @@ fn element_to_text(node: Node<'_, '_>) -> String {
             other => other.to_string(),
         },
         "mover" => child_text(0) + &child_text(1),
-        "msub" => format!("{}_{}", child_text(0), subscript_with_dots(child_text(1))),
+        "msub" => format!("{}_{}", child_text(0), replace_commas_by_dots(child_text(1))),
         "msubsup" => {
             format!(
                 "{}_{}{}",
                 child_text(0),
-                subscript_with_dots(child_text(1)),
+                replace_commas_by_dots(child_text(1)),
                 superscript_of_digit(&child_text(2))
             )
         }
@@ -90,13 +90,13 @@ fn check_mathml_page(model: &Model<'_>) {
     let spelled: Vec<(String, Symbol)> = symbols
         .map(|q| {
             let (name, dots) = written::name_and_derivative_order(model, &rates, q.symbol());
-            let spelled = format_name(&names.get(&name), dots, 1);
+            let spelled = format_name(&names.typeset_name(&name), dots, 1);
             (element_to_text(Document::parse(&spelled).unwrap().root_element()), q.symbol())
         })
         .collect();
     for seed in 1..4 {
         let symbol = random_symbol_values(model, seed);
-        let glyphs_of_word = |word: &str| match spelled.iter().find(|(name, _)| name == word) {
+        let value_of_spelled_name = |word: &str| match spelled.iter().find(|(name, _)| name == word) {
             Some((_, s)) => symbol(*s),
             None => panic!("{word}: {spelled:?}"),
         };
@@ -104,13 +104,13 @@ fn check_mathml_page(model: &Model<'_>) {
         for (k, (plain, page)) in plain.iter().zip(&page).enumerate() {
             if k > 0 {
                 assert_near(
-                    &[evaluate_text(&page.0, &glyphs_of_word)],
+                    &[evaluate_text(&page.0, &value_of_spelled_name)],
                     &[evaluate_text(&plain.0, &names)],
                     &page.0,
                 );
             }
             assert_near(
-                &[evaluate_text(&page.1, &glyphs_of_word)],
+                &[evaluate_text(&page.1, &value_of_spelled_name)],
                 &[evaluate_text(&plain.1, &names)],
                 &page.1,
             );
@@ -121,11 +121,11 @@ fn check_mathml_page(model: &Model<'_>) {
 #[test]
 fn mathml_pages_state_the_same_equations_as_text() {
     for item in [CART_POLE, NUMBERS] {
-        with_model("-9.81 * z", item, |model| check_mathml_page(&model));
+        call_with_parsed_model("-9.81 * z", item, |model| check_mathml_page(&model));
     }
     for item in [DOUBLE_PENDULUM, GYROSCOPE, SHAFT, SPHERICAL, CHAIN, BALL, ARM, WAGON, SPHERE, DISK, FREE] {
-        with_model("-g * z", item, |model| check_mathml_page(&model));
-        with_model("-g * y", item, |model| check_mathml_page(&model));
+        call_with_parsed_model("-g * z", item, |model| check_mathml_page(&model));
+        call_with_parsed_model("-g * y", item, |model| check_mathml_page(&model));
     }
 }
 

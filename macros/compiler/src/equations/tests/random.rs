@@ -12,16 +12,17 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 /// that rotates at a prescribed speed, its first two joints are constrained, or it can rotate freely about
 /// the vertical.
 fn random_chain(r: &mut Random, driven: bool, constrained: bool, free: bool) -> String {
-    let mut pick = |n: u64| r.number_below(n) as usize;
-    let length = 2 + pick(2);
+    let mut random_index_below = |n: u64| r.random_number_below(n) as usize;
+    let length = 2 + random_index_below(2);
     let mut item = "struct Chain { g: f64, l: f64, k: f64, c: f64,".to_string();
     let base = if driven { "table" } else { "ground" };
     if driven {
         item += "w: f64, #[frame(ground, z(w * t))] turned: Frame, #[body(frame = turned)] table: Body,";
     }
-    let pins: Vec<bool> = (0..length).map(|k| (free && k == 0) || pick(3) > 0).collect();
+    let pins: Vec<bool> = (0..length).map(|k| (free && k == 0) || random_index_below(3) > 0).collect();
     for (k, pin) in pins.iter().enumerate() {
-        let (axis, offset, center) = (AXES[pick(3)], AXES[pick(3)], AXES[pick(3)]);
+        let (axis, offset, center) =
+            (AXES[random_index_below(3)], AXES[random_index_below(3)], AXES[random_index_below(3)]);
         let axis = if free && k == 0 { "z" } else { axis };
         let parent = match k {
             0 => base.to_string(),
@@ -50,7 +51,7 @@ fn random_chain(r: &mut Random, driven: bool, constrained: bool, free: bool) -> 
             (true, false) => "1 / l * ",
             _ => "",
         };
-        item += &match (pins[0], pick(2)) {
+        item += &match (pins[0], random_index_below(2)) {
             (true, 0) => format!("#[constraint(rate(j1) = {factor}rate(j0) * cos(j0))] hold: Nonholonomic,"),
             (_, 0) => format!("#[constraint(rate(j1) = 2 * {factor}rate(j0))] hold: Nonholonomic,"),
             _ => format!("#[constraint(j1 = 2 * {factor}j0)] hold: Holonomic,"),
@@ -62,17 +63,17 @@ fn random_chain(r: &mut Random, driven: bool, constrained: bool, free: bool) -> 
 #[test]
 fn all_printed_forms_agree_for_random_mechanisms() {
     let mut random = Random(4321);
-    (0..20).for_each(|_| _ = random.number_below(2));
+    (0..20).for_each(|_| _ = random.random_number_below(2));
     // Number of comparisons: Lagrange's and recursive equations, Hamilton's, Kane's, Routh's.
     let mut compared = [0; 4];
     for k in 0..48 {
         let (driven, constrained) = (k % 4 == 1 || k % 4 == 3, k % 4 > 1);
         let item = random_chain(&mut random, driven, constrained, k % 8 == 0);
-        with_model("-g * z", &item, |model| {
+        call_with_parsed_model("-g * z", &item, |model| {
             let joints = crate::kinematics::joints_of_model(&model);
             let mass = crba::mass_matrix(&model, &joints);
             if derive(&model, &joints, &mass, None, &Limits::READABLE).is_some() {
-                check_equations(&model);
+                check_against_recursive_algorithms(&model);
                 compared[0] += 1;
             }
             if constrained && super::super::kane::kane_equations(&model, &joints, None).is_ok() {

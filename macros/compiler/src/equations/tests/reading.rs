@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 mod numbers;
 pub(super) mod text;
 
-use numbers::{Numbers, assert_same_roots, eigenvalues, polynomial_roots};
+use numbers::{NumericalMechanism, assert_same_roots, eigenvalues, polynomial_roots};
 use text::{NameValues, ParsedEquations, evaluate_text};
 
 /// Compares the printed linear rows with accelerations by finite differences.
@@ -44,19 +44,19 @@ fn check_printed_linear_rows(
 fn call_with_linear_equations<R>(
     gravity: &str,
     item: &str,
-    f: impl for<'g> FnOnce(Numbers<'g>, Vec<ParsedEquations>) -> R,
+    f: impl for<'g> FnOnce(NumericalMechanism<'g>, Vec<ParsedEquations>) -> R,
 ) -> R {
-    with_model(gravity, item, |model| {
+    call_with_parsed_model(gravity, item, |model| {
         let joints = crate::kinematics::joints_of_model(&model);
         let mass = crba::mass_matrix(&model, &joints);
         let equations_about_equilibrium = |at| {
             let mut cx = Diagnostics::new();
             let found = super::super::linear::derive_linear_equations(&model, &joints, &mass, at, &mut cx);
-            let found = found.unwrap_or_else(|| panic!("{:?}", cx.messages()));
+            let found = found.unwrap_or_else(|| panic!("{:?}", cx.full_message_texts()));
             ParsedEquations::parse(&super::super::linear::format_linear_equations(&model, at, &found).plain)
         };
         let texts = model.equilibria.iter().map(equations_about_equilibrium).collect();
-        f(Numbers::new(&model), texts)
+        f(NumericalMechanism::new(&model), texts)
     })
 }
 
@@ -72,8 +72,8 @@ fn value_lookup_by_name<'a>(names: &'a [&str], values: &'a [f64]) -> impl Fn(&st
 fn random_generator(seed: u64, low: f64, high: f64) -> impl FnMut() -> f64 {
     let mut random = Random(2 * seed + 1);
     // The first numbers of a small seed are small.
-    (0..20).for_each(|_| _ = random.number_below(2));
-    move || low + (high - low) * random.number_below(100_000) as f64 / 100_000.0
+    (0..20).for_each(|_| _ = random.random_number_below(2));
+    move || low + (high - low) * random.random_number_below(100_000) as f64 / 100_000.0
 }
 
 fn largest_real_part(polynomial_roots: &[Complex<f64>]) -> f64 {

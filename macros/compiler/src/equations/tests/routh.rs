@@ -92,7 +92,7 @@ pub(super) fn compare_routh_with_lagrange(model: &Model<'_>) -> Vec<String> {
 #[test]
 fn routh_reduced_motion_equals_the_full_motion() {
     for (gravity, item, names) in ROWS {
-        assert_eq!(with_model(gravity, item, |model| compare_routh_with_lagrange(&model)), names);
+        assert_eq!(call_with_parsed_model(gravity, item, |model| compare_routh_with_lagrange(&model)), names);
     }
 }
 
@@ -100,11 +100,17 @@ fn routh_reduced_motion_equals_the_full_motion() {
 #[test]
 fn routh_reduction_of_random_chains_equals_the_full_motion() {
     let mut random = Random(77);
-    (0..20).for_each(|_| _ = random.number_below(2));
+    (0..20).for_each(|_| _ = random.random_number_below(2));
     for length in [2, 3, 4, 2, 3, 4] {
-        let mut number = || random.number_below(1000) as f64 / 500.0 - 1.0;
-        let mut vector =
-            || format!("({:.3} * x + {:.3} * y + {:.3} * z)", number(), number(), number() + 0.1);
+        let mut random_number = || random.random_number_below(1000) as f64 / 500.0 - 1.0;
+        let mut vector = || {
+            format!(
+                "({:.3} * x + {:.3} * y + {:.3} * z)",
+                random_number(),
+                random_number(),
+                random_number() + 0.1
+            )
+        };
         let mut item = "struct Chain { m: f64,
             #[body(mass = m, com = 0.3 * x, inertia = cuboid(m, 0.2, 0.4, 0.6))] link0: Body,
             #[joint(ground -> link0, about = z)] column: Pin,"
@@ -119,7 +125,8 @@ fn routh_reduction_of_random_chains_equals_the_full_motion() {
                 vector()
             );
         }
-        let found = with_model("-9.81 * z", &(item + "}"), |model| compare_routh_with_lagrange(&model));
+        let found =
+            call_with_parsed_model("-9.81 * z", &(item + "}"), |model| compare_routh_with_lagrange(&model));
         assert_eq!(found, ["column"]);
     }
 }
@@ -129,7 +136,7 @@ fn routh_reduction_of_random_chains_equals_the_full_motion() {
 #[test]
 fn lagranges_equations_hold_for_the_routhian() {
     for (gravity, item, _) in ROWS {
-        with_model(gravity, item, |model| {
+        call_with_parsed_model(gravity, item, |model| {
             let joints = crate::kinematics::joints_of_model(&model);
             let mass = crba::mass_matrix(&model, &joints);
             let cyclic = routh::cyclic_coordinates(&model, &joints);
@@ -154,8 +161,8 @@ fn lagranges_equations_hold_for_the_routhian() {
                 let p: Vec<f64> = (0..cyclic.len()).map(|k| 0.9 - 0.7 * k as f64).collect();
                 let value = symbol_values_in_state(&model, seed, &p, &tau);
                 let (a, w) = (acceleration.evaluate_at(&value), velocity.evaluate_at(&value));
-                let momenta_along_motion = |h: f64| {
-                    let value_after_time_step = |s: Symbol| match Quantity::from_symbol(s) {
+                let momenta_after_time_step = |h: f64| {
+                    let symbol_value_after_time_step = |s: Symbol| match Quantity::from_symbol(s) {
                         Quantity::Configuration(k) => {
                             let rate = cyclic
                                 .iter()
@@ -168,16 +175,16 @@ fn lagranges_equations_hold_for_the_routhian() {
                         }
                         _ => value(s),
                     };
-                    momenta.evaluate_at(&value_after_time_step)
+                    momenta.evaluate_at(&symbol_value_after_time_step)
                 };
                 let h = 1e-3;
                 let ((b, c), (d, e)) = (
-                    (momenta_along_motion(h), momenta_along_motion(-h)),
-                    (momenta_along_motion(2.0 * h), momenta_along_motion(-2.0 * h)),
+                    (momenta_after_time_step(h), momenta_after_time_step(-h)),
+                    (momenta_after_time_step(2.0 * h), momenta_after_time_step(-2.0 * h)),
                 );
                 let rate: Vec<f64> =
                     (0..b.len()).map(|k| (8.0 * (b[k] - c[k]) - (d[k] - e[k])) / (12.0 * h)).collect();
-                let value_with_cyclic_velocities = |s: Symbol| match Quantity::from_symbol(s) {
+                let symbol_value_with_cyclic_velocities = |s: Symbol| match Quantity::from_symbol(s) {
                     Quantity::Velocity(k) => {
                         cyclic.iter().position(|c| *c == k).map_or_else(|| value(s), |c| w[c])
                     }
@@ -186,7 +193,7 @@ fn lagranges_equations_hold_for_the_routhian() {
                 for ((rate, slope), lost) in rate
                     .iter()
                     .zip(slopes.evaluate_at(&value))
-                    .zip(lost.evaluate_at(&value_with_cyclic_velocities))
+                    .zip(lost.evaluate_at(&symbol_value_with_cyclic_velocities))
                 {
                     let size = 1.0 + rate.abs() + slope.abs();
                     assert!(
@@ -205,13 +212,13 @@ fn lagranges_equations_hold_for_the_routhian() {
 fn printed_routhian_equals_generated_functions() {
     let mut texts = Vec::new();
     for (gravity, item, _) in ROWS {
-        with_model(gravity, item, |model| {
+        call_with_parsed_model(gravity, item, |model| {
             let joints = crate::kinematics::joints_of_model(&model);
             let mass = crba::mass_matrix(&model, &joints);
             let cyclic = routh::cyclic_coordinates(&model, &joints);
             let functions = routh::derive(&model, &joints, &mass, cyclic.clone());
             let printed = routh_equations(&model, &joints, &mass, cyclic.clone()).expect("small");
-            let inputs = forces::generalized_forces(&model, &joints);
+            let inputs = forces::generalized_forces_of_inputs(&model, &joints);
             let others: Vec<usize> = (0..model.nv()).filter(|k| !cyclic.contains(k)).collect();
             for seed in 1..8 {
                 let p: Vec<f64> = (0..cyclic.len()).map(|k| 0.9 - 0.7 * k as f64).collect();
@@ -219,16 +226,16 @@ fn printed_routhian_equals_generated_functions() {
                 let tau = eval(&inputs, &symbol);
                 let symbol = symbol_values_in_state(&model, seed, &p, &tau);
                 let a = eval(&functions.acceleration, &symbol);
-                let value_with_unit_inertias = |s: Symbol| match Quantity::from_symbol(s) {
+                let symbol_value_with_unit_inertias = |s: Symbol| match Quantity::from_symbol(s) {
                     Quantity::Prepared(_) => 1.0,
                     _ => symbol(s),
                 };
                 let inertias: Vec<f64> = printed
                     .determinants
                     .iter()
-                    .map(|d| printed.ring.evaluate_polynomial(d, &value_with_unit_inertias))
+                    .map(|d| printed.ring.evaluate_polynomial(d, &symbol_value_with_unit_inertias))
                     .collect();
-                let value_of_symbol = |s: Symbol| match Quantity::from_symbol(s) {
+                let symbol_value_with_accelerations = |s: Symbol| match Quantity::from_symbol(s) {
                     Quantity::Prepared(k) => inertias[k],
                     Quantity::Acceleration(k) => {
                         others.iter().position(|o| *o == k).map_or(f64::NAN, |o| a[o])
@@ -237,7 +244,9 @@ fn printed_routhian_equals_generated_functions() {
                     _ => symbol(s),
                 };
                 let values_of_polynomials = |list: &[Polynomial]| -> Vec<f64> {
-                    list.iter().map(|p| printed.ring.evaluate_polynomial(p, &value_of_symbol)).collect()
+                    list.iter()
+                        .map(|p| printed.ring.evaluate_polynomial(p, &symbol_value_with_accelerations))
+                        .collect()
                 };
                 // The ring also evaluates atoms that no polynomial contains.
                 assert_near(

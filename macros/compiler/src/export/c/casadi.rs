@@ -10,7 +10,7 @@ use super::super::comments::wrap_paragraph;
 use super::super::handwritten::METHODS;
 use super::super::mechanism::{ExportObstacle, ExportedMechanism};
 use super::super::names::replace_invalid_characters;
-use super::super::signatures::{Array, ExportedSignature};
+use super::super::signatures::{ArrayArgument, ExportedSignature};
 use super::super::template::TemplateValues;
 use super::super::tokens::{c_numeric_literal, contains_word};
 use std::fmt::Write;
@@ -25,7 +25,7 @@ struct MatrixArgument {
 }
 
 impl MatrixArgument {
-    fn from_array(array: &Array) -> MatrixArgument {
+    fn from_array(array: &ArrayArgument) -> MatrixArgument {
         let (rows, columns) = (array.rows.to_string(), array.columns.to_string());
         MatrixArgument { name: array.name.clone(), rows, columns, is_dense: true }
     }
@@ -33,13 +33,13 @@ impl MatrixArgument {
     /// Reads `name:rows` of a vector, or `name:rows:columns`. Without columns the pattern is empty.
     fn from_text(text: &str) -> MatrixArgument {
         let mut parts = text.split(':').map(ToString::to_string);
-        let mut next = || parts.next().unwrap_or_else(|| "1".to_string());
-        let (name, rows, columns) = (next(), next(), next());
+        let mut next_part_or_one = || parts.next().unwrap_or_else(|| "1".to_string());
+        let (name, rows, columns) = (next_part_or_one(), next_part_or_one(), next_part_or_one());
         let is_dense = columns != "0";
         MatrixArgument { name, rows, columns: if is_dense { columns } else { "1".to_string() }, is_dense }
     }
 
-    fn length(&self) -> String {
+    fn length_expression(&self) -> String {
         format!("({}) * ({})", self.rows, self.columns)
     }
 }
@@ -102,13 +102,14 @@ impl CasadiWriter<'_> {
         let is_plain = i.model.acceleration_forces.is_empty();
         let forces = i.signature("generalized_forces").map(|f| {
             let velocity = format!("x + {}", i.nv());
-            let argument = |a: &Array| match a.name.as_str() {
+            let call_argument_of_array = |a: &ArrayArgument| match a.name.as_str() {
                 "q" => "x".to_string(),
                 "v" => velocity.clone(),
                 other => other.to_string(),
             };
-            let list: Vec<String> = f.arguments.iter().map(argument).chain(["force".to_string()]).collect();
-            i.call("generalized_forces", &list.iter().map(String::as_str).collect::<Vec<_>>())
+            let list: Vec<String> =
+                f.arguments.iter().map(call_argument_of_array).chain(["force".to_string()]).collect();
+            i.function_call_text("generalized_forces", &list.iter().map(String::as_str).collect::<Vec<_>>())
         });
         let conditions = [
             ("OWN", i.takes_parameter_struct()),
@@ -227,11 +228,12 @@ impl CasadiWriter<'_> {
 
     /// Returns the function that calls a function of the mechanism.
     fn external_from_signature(&self, f: &ExportedSignature) -> CasadiExternalFunction {
-        let argument = |a: &Array| if a.is_value { format!("{}[0]", a.name) } else { a.name.clone() };
+        let call_argument_of_array =
+            |a: &ArrayArgument| if a.is_value { format!("{}[0]", a.name) } else { a.name.clone() };
         let results = (0..f.results.len()).filter(|_| !f.returns).map(|k| format!("r{k}"));
         let own = self.i.takes_parameter_struct().then(|| "&self".to_string());
         let list: Vec<String> =
-            own.into_iter().chain(f.arguments.iter().map(argument)).chain(results).collect();
+            own.into_iter().chain(f.arguments.iter().map(call_argument_of_array)).chain(results).collect();
         let call = format!("{}_{}({});\n", self.i.prefix, f.name, list.join(", "));
         CasadiExternalFunction {
             name: format!("{}_casadi_{}", self.i.prefix, f.name),
@@ -246,20 +248,21 @@ impl CasadiWriter<'_> {
     fn template_functions(&self, values: &TemplateValues, text: &str) -> Vec<CasadiExternalFunction> {
         let text = values.fill(&self.template.fill(text));
         let sections = text.split("//// ").filter_map(|section| section.split_once('\n'));
-        let external = |(head, body): (&str, &str)| {
+        let parse_external_function = |(head, body): (&str, &str)| {
             let (name, head) = head.split_once(" : ")?;
             let (inputs, outputs) = head.split_once(" -> ")?;
             let (outputs, work) = outputs.split_once(" + ").unwrap_or((outputs, "0"));
-            let entries = |text: &str| text.split_whitespace().map(MatrixArgument::from_text).collect();
+            let parse_matrix_arguments =
+                |text: &str| text.split_whitespace().map(MatrixArgument::from_text).collect();
             Some(CasadiExternalFunction {
                 name: name.to_string(),
-                inputs: entries(inputs),
-                outputs: entries(outputs),
+                inputs: parse_matrix_arguments(inputs),
+                outputs: parse_matrix_arguments(outputs),
                 work: work.to_string(),
                 body: body.to_string(),
             })
         };
-        sections.filter_map(external).collect()
+        sections.filter_map(parse_external_function).collect()
     }
 
     fn write_external(&self, text: &mut String, f: &CasadiExternalFunction) {
@@ -278,14 +281,14 @@ impl CasadiWriter<'_> {
         };
         let mut body = String::new();
         for (k, output) in f.outputs.iter().enumerate() {
-            let (result, length) = (&output.name, output.length());
+            let (result, length) = (&output.name, output.length_expression());
             let _ = writeln!(
                 body,
                 "    casadi_real *r{k} = res[{k}] ? res[{k}] : w; /* {result} */\n    w += {length};"
             );
         }
         for (k, input) in inputs.iter().enumerate().filter(|(_, input)| input.is_dense) {
-            let (name, length) = (&input.name, input.length());
+            let (name, length) = (&input.name, input.length_expression());
             let _ = writeln!(
                 body,
                 "    static const casadi_real no_{name}[{length} + 1] = {{0}};\n    \
@@ -302,7 +305,8 @@ impl CasadiWriter<'_> {
             let _ = writeln!(body, "    const struct {} self = lw_own({parameters});", self.i.prefix);
         }
         let outputs: Vec<&MatrixArgument> = f.outputs.iter().collect();
-        let lengths: String = outputs.iter().map(|entry| format!("{} + ", entry.length())).collect();
+        let lengths: String =
+            outputs.iter().map(|entry| format!("{} + ", entry.length_expression())).collect();
         let _ = writeln!(
             text,
             "int {name}(const casadi_real **arg, casadi_real **res, casadi_int *iw, casadi_real *w, int mem) \
@@ -322,13 +326,15 @@ impl CasadiWriter<'_> {
 /// offsets of an empty one with a single column.
 fn names_and_shapes(function: &str, side: &str, entries: &[&MatrixArgument]) -> String {
     // Arrays in C have at least one element.
-    let join = |all: Vec<String>, none: &str| if all.is_empty() { none.to_string() } else { all.join(", ") };
+    let join_or_placeholder =
+        |all: Vec<String>, none: &str| if all.is_empty() { none.to_string() } else { all.join(", ") };
     let names = entries.iter().map(|entry| format!("\"{}\"", entry.name)).collect();
-    let shape = |e: &&MatrixArgument| format!("{{{}, {}, {}, 0}}", e.rows, e.columns, i32::from(e.is_dense));
+    let shape_initializer =
+        |e: &&MatrixArgument| format!("{{{}, {}, {}, 0}}", e.rows, e.columns, i32::from(e.is_dense));
     format!(
         "static const char *const {function}_names_{side}[] = {{{}}};\nstatic const casadi_int \
          {function}_shapes_{side}[][4] = {{{}}};\n",
-        join(names, "0"),
-        join(entries.iter().map(shape).collect(), "{0}")
+        join_or_placeholder(names, "0"),
+        join_or_placeholder(entries.iter().map(shape_initializer).collect(), "{0}")
     )
 }

@@ -1,26 +1,27 @@
 //! Results that consist of several matrices, and results that loops compose at run time.
 
 use super::super::body::{Scope, write_program};
-use super::super::mechanism::{ExportedMechanism, is_zero};
+use super::super::mechanism::{ExportedMechanism, is_zero_output};
 use crate::catalogue::{InverseForm, Shape};
 use crate::derive::Function;
 use std::fmt::Write;
 
 /// Writes the body of a C function whose result is assembled from the outputs of its program.
 pub fn write_composed_body(body: &mut String, f: &Function, scope: &Scope<'_>, i: &ExportedMechanism<'_>) {
-    let write = |body: &mut String, assembled_output_element: &dyn Fn(usize) -> Option<String>| {
-        write_program(body, &f.program, scope, assembled_output_element);
-    };
+    let write_program_to_targets =
+        |body: &mut String, assembled_output_element: &dyn Fn(usize) -> Option<String>| {
+            write_program(body, &f.program, scope, assembled_output_element);
+        };
     match f.shape {
         Shape::Inverse(n) => {
             let inverse = InverseMassMatrixOutputs::new(body, f, "result", n, &[]);
-            write(body, &|k| Some(inverse.element_of_output(k)));
-            inverse.complete(body);
+            write_program_to_targets(body, &|k| Some(inverse.element_of_output(k)));
+            inverse.write_completion_of_inverse(body);
         }
         Shape::Accelerated(n) => {
             let inverse = InverseMassMatrixOutputs::new(body, f, "inverse", n, &[("result", n)]);
-            write(body, &|k| Some(inverse.element_of_output(k)));
-            inverse.complete(body);
+            write_program_to_targets(body, &|k| Some(inverse.element_of_output(k)));
+            inverse.write_completion_of_inverse(body);
             if let InverseForm::BlockArrow { trunk, .. } = inverse.form {
                 let _ = writeln!(
                     body,
@@ -37,8 +38,8 @@ pub fn write_composed_body(body: &mut String, f: &Function, scope: &Scope<'_>, i
             program.outputs.truncate(inverse.output_count());
             program.remove_unused_instructions();
             write_program(body, &program, scope, &|k| Some(inverse.element_of_output(k)));
-            inverse.complete(body);
-            write_acceleration_conversion(body, f, n);
+            inverse.write_completion_of_inverse(body);
+            write_conversion_to_acceleration_derivatives(body, f, n);
         }
         Shape::CalledForward(n) => write_composed_forward_derivatives(body, f, n, scope, i),
         Shape::Linear(n, m) => {
@@ -48,14 +49,14 @@ pub fn write_composed_body(body: &mut String, f: &Function, scope: &Scope<'_>, i
             let inverse =
                 InverseMassMatrixOutputs::new(body, f, "inverse", n, &[("by_q", n * n), ("by_v", n * n)]);
             let rest = inverse.output_count();
-            write(body, &|k| match k < rest {
+            write_program_to_targets(body, &|k| match k < rest {
                 true => Some(inverse.element_of_output(k)),
                 false => Some(system_matrix_element(n, m, k - rest)),
             });
-            inverse.complete(body);
-            write_inverse_products(body, n, "inverse", "by_q", n);
-            write_inverse_products(body, n, "inverse", "by_v", n);
-            write_system_matrices(body, n, m);
+            inverse.write_completion_of_inverse(body);
+            write_negative_inverse_product(body, n, "inverse", "by_q", n);
+            write_negative_inverse_product(body, n, "inverse", "by_v", n);
+            write_assembly_of_system_matrices(body, n, m);
         }
         Shape::CalledLinear(n, m) => write_linear_system_by_calls(body, f, (n, m), scope, i),
         _ => {}
@@ -94,9 +95,10 @@ impl<'a> InverseMassMatrixOutputs<'a> {
         let list: Vec<String> = trunk.iter().map(ToString::to_string).collect();
         let _ = writeln!(body, "    static const int trunk[{}] = {{{}}};", trunk.len(), list.join(", "));
         if let InverseForm::BlockArrow { limbs, .. } = form {
-            let limb_of = |k: usize| limbs.iter().position(|limb| limb.contains(&k));
-            let all: Vec<String> =
-                (0..n).map(|k| limb_of(k).map_or("-1".to_string(), |limb| limb.to_string())).collect();
+            let limb_index_of_velocity = |k: usize| limbs.iter().position(|limb| limb.contains(&k));
+            let all: Vec<String> = (0..n)
+                .map(|k| limb_index_of_velocity(k).map_or("-1".to_string(), |limb| limb.to_string()))
+                .collect();
             let _ = writeln!(body, "    static const int limb[{n}] = {{{}}};", all.join(", "));
         }
         let _ = writeln!(body, "    double trunk_factors[{}];", n * trunk.len());
@@ -121,7 +123,7 @@ impl<'a> InverseMassMatrixOutputs<'a> {
     }
 
     /// Writes the statements that complete the inverse mass matrix from its factored form.
-    fn complete(&self, body: &mut String) {
+    fn write_completion_of_inverse(&self, body: &mut String) {
         let (n, width, name) = (self.n, self.trunk.len(), self.name);
         let _ = match self.form {
             InverseForm::LowRankUpdate(_) if width > 0 => {
@@ -136,7 +138,7 @@ impl<'a> InverseMassMatrixOutputs<'a> {
 }
 
 /// Writes the product of the negative inverse with a factor, which the product overwrites.
-fn write_inverse_products(body: &mut String, n: usize, inverse: &str, factor: &str, columns: usize) {
+fn write_negative_inverse_product(body: &mut String, n: usize, inverse: &str, factor: &str, columns: usize) {
     if columns > 0 {
         let _ = writeln!(body, "    lw_minus_products({n}, {columns}, {inverse}, {factor});");
     }
@@ -144,13 +146,13 @@ fn write_inverse_products(body: &mut String, n: usize, inverse: &str, factor: &s
 
 /// Writes the conversion from force derivatives to acceleration derivatives; columns in `known` are already
 /// converted.
-fn write_acceleration_conversion(body: &mut String, f: &Function, n: usize) {
+fn write_conversion_to_acceleration_derivatives(body: &mut String, f: &Function, n: usize) {
     for (matrix, known) in ["by_q", "by_v"].into_iter().zip(&f.structure.known) {
         let mut first = 0;
         while first < n {
             let end = (first..n).find(|column| known.contains(column)).unwrap_or(n);
             let from = if first == 0 { matrix.to_string() } else { format!("{matrix} + {}", first * n) };
-            write_inverse_products(body, n, "by_tau", &from, end - first);
+            write_negative_inverse_product(body, n, "by_tau", &from, end - first);
             first = end + 1;
         }
     }
@@ -167,10 +169,10 @@ fn write_composed_forward_derivatives(
         body,
         "    double a[{}];\n    {};\n    {};",
         n.max(1),
-        i.call("accelerations_and_inverse", &["q", "v", "tau", "a", "by_tau"]),
-        i.call("inverse_dynamics_derivatives", &["q", "v", "a", "by_q", "by_v"])
+        i.function_call_text("accelerations_and_inverse", &["q", "v", "tau", "a", "by_tau"]),
+        i.function_call_text("inverse_dynamics_derivatives", &["q", "v", "a", "by_q", "by_v"])
     );
-    write_acceleration_conversion(body, f, n);
+    write_conversion_to_acceleration_derivatives(body, f, n);
     let columns = ["by_q", "by_v"].into_iter().zip(&f.structure.known);
     let columns: Vec<(&str, usize)> =
         columns.flat_map(|(matrix, known)| known.iter().map(move |column| (matrix, *column))).collect();
@@ -189,7 +191,7 @@ fn system_matrix_element(n: usize, m: usize, k: usize) -> String {
 }
 
 /// Writes the composition of the system matrices.
-fn write_system_matrices(body: &mut String, n: usize, m: usize) {
+fn write_assembly_of_system_matrices(body: &mut String, n: usize, m: usize) {
     if n > 0 {
         let _ = writeln!(body, "    lw_assemble({n}, {m}, by_q, by_v, inverse, by_state, by_input);");
     }
@@ -215,10 +217,11 @@ fn write_linear_system_by_calls(
         k if k < rest => Some(format!("more[{}]", k - n)),
         k => Some(system_matrix_element(n, m, k - rest)),
     });
-    let call = i.call("forward_dynamics_derivatives", &["q", "v", "tau", "by_q", "by_v", "inverse"]);
+    let call =
+        i.function_call_text("forward_dynamics_derivatives", &["q", "v", "tau", "by_q", "by_v", "inverse"]);
     let _ = writeln!(body, "    {call};");
-    if (n..rest).any(|k| !is_zero(f, k)) {
-        write_inverse_products(body, n, "inverse", "more", 2 * n);
+    if (n..rest).any(|k| !is_zero_output(f, k)) {
+        write_negative_inverse_product(body, n, "inverse", "more", 2 * n);
         let _ = writeln!(
             body,
             "    for (int k = 0; k < {0}; ++k) {{\n        by_q[k] -= more[k];\n        \
@@ -228,5 +231,5 @@ fn write_linear_system_by_calls(
     } else {
         body.push_str("    (void)(more);\n");
     }
-    write_system_matrices(body, n, m);
+    write_assembly_of_system_matrices(body, n, m);
 }

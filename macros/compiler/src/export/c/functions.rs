@@ -2,10 +2,10 @@
 
 use super::super::body::{MISSING, Scope, write_program};
 use super::super::mechanism::ExportedMechanism;
-use super::super::signatures::{Array, ExportedSignature, public_identifier};
+use super::super::signatures::{ArrayArgument, ExportedSignature, public_identifier};
 use super::super::tokens::contains_word;
 use super::composed::write_composed_body;
-use crate::catalogue::{Argument, Called, Id, Shape};
+use crate::catalogue::{Argument, CalledFunction, GeneratedId, Shape};
 use crate::derive::Function;
 use crate::lower::Program;
 use std::borrow::Cow;
@@ -31,7 +31,7 @@ pub fn function_head(i: &ExportedMechanism<'_>, f: &ExportedSignature) -> String
 }
 
 /// Returns the definition of a function with a body. Unused arguments cause no compiler warnings.
-pub fn definition(i: &ExportedMechanism<'_>, f: &ExportedSignature, body: &str) -> String {
+pub fn function_definition(i: &ExportedMechanism<'_>, f: &ExportedSignature, body: &str) -> String {
     let own = i.takes_parameter_struct().then_some("self");
     let unused: String = own
         .into_iter()
@@ -44,27 +44,28 @@ pub fn definition(i: &ExportedMechanism<'_>, f: &ExportedSignature, body: &str) 
 
 /// Returns the definitions of all derived functions. With `is_late`, bodies are for processors that keep all
 /// values in registers.
-pub fn derived_definitions(i: &ExportedMechanism<'_>, is_late: bool) -> String {
+pub fn definitions_of_derived_functions(i: &ExportedMechanism<'_>, is_late: bool) -> String {
     let mut text = String::new();
-    let definition_of =
-        |f: &Function| definition(i, &ExportedSignature::from_function(f, i), &body(i, f, is_late));
+    let definition_of = |f: &Function| {
+        function_definition(i, &ExportedSignature::from_function(f, i), &derived_function_body(i, f, is_late))
+    };
     i.hidden.iter().for_each(|f| text.push_str(&format!("static {}\n", definition_of(f))));
     i.public.iter().for_each(|f| text.push_str(&format!("{}\n", definition_of(f))));
     let signatures = i.functions.iter().skip(i.public.len());
     for (f, signature) in i.reactions.iter().zip(signatures) {
         let body = reaction_body(i, f);
-        let _ = writeln!(text, "static {}\n{}", definition_of(f), definition(i, signature, &body));
+        let _ = writeln!(text, "static {}\n{}", definition_of(f), function_definition(i, signature, &body));
     }
     text
 }
 
 /// Returns the body of a derived function.
-fn body(i: &ExportedMechanism<'_>, f: &Function, is_late: bool) -> String {
+fn derived_function_body(i: &ExportedMechanism<'_>, f: &Function, is_late: bool) -> String {
     let mut body = String::new();
     let arguments: Vec<Argument> =
-        f.arguments.iter().copied().chain(Called::ALL.map(Argument::Called)).collect();
+        f.arguments.iter().copied().chain(CalledFunction::ALL.map(Argument::Called)).collect();
     let scope = Scope { arguments: &arguments, parameters: &i.parameters, tables: &i.tables, is_late };
-    Called::ALL.into_iter().for_each(|called| write_call(&mut body, f, called, i));
+    CalledFunction::ALL.into_iter().for_each(|called| write_call_if_needed(&mut body, f, called, i));
     match f.shape {
         Shape::Scalar => {
             let result = write_program(&mut body, &f.program, &scope, &|_| None);
@@ -78,8 +79,8 @@ fn body(i: &ExportedMechanism<'_>, f: &Function, is_late: bool) -> String {
         | Shape::CalledLinear(..) => write_composed_body(&mut body, f, &scope, i),
         _ => {
             let signature = ExportedSignature::from_function(f, i);
-            let program = result_program(f, i);
-            let count: usize = signature.results.iter().map(Array::length).sum();
+            let program = program_of_own_results(f, i);
+            let count: usize = signature.results.iter().map(ArrayArgument::length).sum();
             if count != program.outputs.len() {
                 let _ = writeln!(body, "    {MISSING};");
             }
@@ -91,8 +92,8 @@ fn body(i: &ExportedMechanism<'_>, f: &Function, is_late: bool) -> String {
 
 /// Returns the program of a function without the outputs that are not results: the forces of inputs, which
 /// are the results of another function, before their derivatives.
-pub fn result_program<'f>(f: &'f Function, i: &ExportedMechanism<'_>) -> Cow<'f, Program> {
-    if f.id != Id::InputDerivatives {
+pub fn program_of_own_results<'f>(f: &'f Function, i: &ExportedMechanism<'_>) -> Cow<'f, Program> {
+    if f.id != GeneratedId::InputDerivatives {
         return Cow::Borrowed(&f.program);
     }
     let mut program = f.program.clone();
@@ -102,19 +103,19 @@ pub fn result_program<'f>(f: &'f Function, i: &ExportedMechanism<'_>) -> Cow<'f,
 }
 
 /// Writes the call of a function whose results are inputs of the program, if the program uses them.
-fn write_call(body: &mut String, f: &Function, called: Called, i: &ExportedMechanism<'_>) {
+fn write_call_if_needed(body: &mut String, f: &Function, called: CalledFunction, i: &ExportedMechanism<'_>) {
     if !f.reads_results_of(called) {
         return;
     }
     let id = match called {
-        Called::PassiveForces => Id::PassiveForces,
-        Called::PassiveDerivatives => Id::PassiveDerivatives,
+        CalledFunction::PassiveForces => GeneratedId::PassiveForces,
+        CalledFunction::PassiveDerivatives => GeneratedId::PassiveDerivatives,
         // C lacks the functions that read them.
-        Called::ContactFeatures => return,
+        CalledFunction::ContactFeatures => return,
     };
     let name = Argument::Called(called).argument_name();
-    let length = i.find(id).map_or(0, |f| f.program.outputs.len());
-    let call = i.call(&public_identifier(called.function_name()), &["q", "v", name]);
+    let length = i.find_derived_function(id).map_or(0, |f| f.program.outputs.len());
+    let call = i.function_call_text(&public_identifier(called.function_name()), &["q", "v", name]);
     let _ = writeln!(body, "    double {name}[{length}];\n    {call};");
 }
 
@@ -124,15 +125,22 @@ fn reaction_body(i: &ExportedMechanism<'_>, f: &Function) -> String {
     let mut body = format!("    double a[{n}], tau[{n}];\n");
     let forces = match m {
         0 => format!("for (int k = 0; k < {n}; ++k) {{\n        tau[k] = 0.0;\n    }}"),
-        _ => format!("{};", i.call("generalized_forces", &[i.input_arguments(), &["tau"]].concat())),
+        _ => format!(
+            "{};",
+            i.function_call_text("generalized_forces", &[i.input_force_argument_names(), &["tau"]].concat())
+        ),
     };
-    let _ = writeln!(body, "    {forces}\n    {};", i.call("forward_dynamics", &["q", "v", "tau", "a"]));
+    let _ = writeln!(
+        body,
+        "    {forces}\n    {};",
+        i.function_call_text("forward_dynamics", &["q", "v", "tau", "a"])
+    );
     let mut given = vec!["q", "v", "a"];
     given.extend((m > 0).then_some("u"));
     let hidden = public_identifier(&f.name);
     let _ = match f.shape {
-        Shape::Scalar => writeln!(body, "    return {};", i.call(&hidden, &given)),
-        _ => writeln!(body, "    {};", i.call(&hidden, &[&given[..], &["result"]].concat())),
+        Shape::Scalar => writeln!(body, "    return {};", i.function_call_text(&hidden, &given)),
+        _ => writeln!(body, "    {};", i.function_call_text(&hidden, &[&given[..], &["result"]].concat())),
     };
     body
 }

@@ -131,7 +131,7 @@ pub fn header_text(i: &ExportedMechanism<'_>, reproducible: bool) -> String {
             );
         }
         let results = if f.returns { &[][..] } else { &f.results };
-        let _ = writeln!(text, "{}{};\n", f.comment(results), function_head(i, f));
+        let _ = writeln!(text, "{}{};\n", f.function_comment(results), function_head(i, f));
     }
     text + "#ifdef __cplusplus\n}\n#endif\n\n#endif\n"
 }

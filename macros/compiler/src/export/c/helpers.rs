@@ -3,7 +3,7 @@
 
 use super::super::mechanism::ExportedMechanism;
 use super::super::template::TemplateValues;
-use super::super::tokens::replaced;
+use super::super::tokens::replace_numbers_and_words;
 
 /// Arithmetic of the code.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -79,7 +79,7 @@ fn called_sections(code: &str, library: &[&str]) -> String {
 
 /// Replaces calls of the mathematical library by calls of included functions, and inserts their definitions.
 fn replace_math_library_calls(code: &str) -> String {
-    let code = replaced(code, &|number| number.to_string(), &|word, after| {
+    let code = replace_numbers_and_words(code, &|number| number.to_string(), &|word, after| {
         let is_call = after.starts_with('(') && REPLACED.contains(&word);
         if is_call { format!("lw_{word}") } else { word.to_string() }
     });

@@ -13,7 +13,7 @@ mod helpers;
 mod kinematics;
 mod source;
 
-pub(super) use functions::result_program;
+pub(super) use functions::program_of_own_results;
 pub(super) use header::{
     c_parameter_type_definitions, frame_index_constants, list_state_entries, size_macros,
 };

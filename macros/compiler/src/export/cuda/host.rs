@@ -19,14 +19,14 @@ fn write_launch_function(text: &mut String, kernels: &Kernels<'_>, f: &ExportedS
     let p = &kernels.i.prefix;
     let upper = p.to_ascii_uppercase();
     let _ = writeln!(text, "{}", kernels.kernel_preprocessor_condition(f));
-    text.push_str(&f.comment(&f.results));
+    text.push_str(&f.function_comment(&f.results));
     let mut declared = vec!["long long states".to_string()];
     let mut passed = vec!["states".to_string()];
-    let view_argument = |kind: &str, name: &str| {
+    let view_declaration_and_values = |kind: &str, name: &str| {
         (format!("lw_view<{kind}> {name}"), format!("{name}.at, {name}.entry_of(states), {name}.state"))
     };
     if kernels.i.takes_parameter_struct() {
-        let (argument, values) = view_argument("const double", "parameters");
+        let (argument, values) = view_declaration_and_values("const double", "parameters");
         declared.push(argument);
         passed.push(values);
     }
@@ -38,8 +38,10 @@ fn write_launch_function(text: &mut String, kernels: &Kernels<'_>, f: &ExportedS
         declared.push("int frame".to_string());
         passed.push("frame".to_string());
     }
-    let arguments = f.arguments.iter().map(|a| view_argument("const double", &a.name));
-    for (argument, values) in arguments.chain(f.results.iter().map(|a| view_argument("double", &a.name))) {
+    let arguments = f.arguments.iter().map(|a| view_declaration_and_values("const double", &a.name));
+    for (argument, values) in
+        arguments.chain(f.results.iter().map(|a| view_declaration_and_values("double", &a.name)))
+    {
         declared.push(argument);
         passed.push(values);
     }

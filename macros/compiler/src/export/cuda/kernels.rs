@@ -1,9 +1,9 @@
 //! Kernels that CUDA has in addition to the functions in C: products of row vectors with Jacobians.
 
 use super::super::mechanism::ExportedMechanism;
-use super::super::signatures::{Array, ExportedSignature};
+use super::super::signatures::{ArrayArgument, ExportedSignature};
 use super::super::template::TemplateValues;
-use crate::catalogue::{Id, InverseForm};
+use crate::catalogue::{GeneratedId, InverseForm};
 
 /// Products of row vectors with the Jacobians of inverse and forward dynamics.
 pub struct JacobianProducts<'a> {
@@ -18,14 +18,14 @@ const NAMES: [&str; 2] = ["inverse_dynamics_vjp", "forward_dynamics_vjp"];
 
 impl<'a> JacobianProducts<'a> {
     /// Determines the vector–Jacobian products that a mechanism has.
-    pub fn from_interface(i: &'a ExportedMechanism<'a>) -> JacobianProducts<'a> {
+    pub fn from_mechanism(i: &'a ExportedMechanism<'a>) -> JacobianProducts<'a> {
         let has_function = |name: &str| i.signature(name).is_some();
         let is_plain = i.model.acceleration_forces.is_empty();
         let has_inverse = has_function("inverse_dynamics_derivatives") && has_function("mass_matrix");
         let has_forward =
             has_inverse && has_function("forward_dynamics") && has_function("mass_matrix_inverse");
         let has = [has_inverse, has_forward].map(|has| has && is_plain && i.nv() > 0);
-        let inverse = i.find(Id::MassMatrixInverse);
+        let inverse = i.find_derived_function(GeneratedId::MassMatrixInverse);
         JacobianProducts {
             i,
             has: [0, 1].map(|k| has[k] && !has_function(NAMES[k])),
@@ -35,7 +35,7 @@ impl<'a> JacobianProducts<'a> {
     }
 
     /// Returns the vector–Jacobian products that are not available, with reasons.
-    pub fn left_out(&self) -> Vec<String> {
+    pub fn unavailable_products_with_reasons(&self) -> Vec<String> {
         let reason = self.reason.into_iter();
         reason.map(|why| format!("{}: {why}", NAMES.join(" and "))).collect()
     }
@@ -47,9 +47,9 @@ impl<'a> JacobianProducts<'a> {
             let of = ["inverse_dynamics", "forward_dynamics"][k];
             let Some(function) = self.i.signature(of) else { continue };
             let mut product = ExportedSignature { name: (*name).to_string(), ..function.clone() };
-            product.arguments.push(Array::vector("w", self.i.nv()));
+            product.arguments.push(ArrayArgument::vector("w", self.i.nv()));
             let by = ["by_q", "by_v", ["by_a", "by_tau"][k]];
-            product.results = by.map(|name| Array::vector(name, self.i.nv())).to_vec();
+            product.results = by.map(|name| ArrayArgument::vector(name, self.i.nv())).to_vec();
             product.docs = vec![format!(
                 "Products of a row vector `w` with the Jacobians of `{of}` by its arguments: the gradient of \
                  a loss by them, with `w` the gradient of the loss by the result. The gradient by `q` is \

@@ -11,9 +11,9 @@ mod python;
 
 use super::c;
 use super::mechanism::{ExportObstacle, ExportedMechanism, Options};
-use super::signatures::{Array, ExportedSignature};
+use super::signatures::{ArrayArgument, ExportedSignature};
 use super::tokens::in_single_precision;
-use crate::derive::Output;
+use crate::derive::DerivationOutput;
 use crate::mechanism::Model;
 use std::fmt::Write;
 
@@ -46,12 +46,12 @@ struct Kernels<'a> {
 /// The mechanism is not supported, for the reason in [`ExportObstacle`].
 pub fn export_cuda_kernels(
     model: &Model<'_>,
-    output: &Output,
+    output: &DerivationOutput,
     tables: &[String],
     options: &Options,
 ) -> Result<KernelFiles, ExportObstacle> {
     let i = ExportedMechanism::new(model, output, tables, options)?;
-    let products = kernels::JacobianProducts::from_interface(&i);
+    let products = kernels::JacobianProducts::from_mechanism(&i);
     let functions = i.functions.iter().cloned().chain(products.product_signatures()).collect();
     let scalar = if options.single { "float" } else { "double" };
     let kernels = Kernels { i: &i, functions, scalar };
@@ -63,7 +63,7 @@ pub fn export_cuda_kernels(
         kernels: kernels.kernel_source(&definitions, &convert_to_requested_precision),
         host: convert_to_requested_precision(host::header_text(&kernels)),
         python: python::python_module(&kernels),
-        left_out: i.left_out.iter().cloned().chain(products.left_out()).collect(),
+        left_out: i.left_out.iter().cloned().chain(products.unavailable_products_with_reasons()).collect(),
     })
 }
 
@@ -160,6 +160,6 @@ impl Kernels<'_> {
 }
 
 /// Returns the entries of an array for the state of a thread.
-fn array_entries_of_thread(array: &Array) -> String {
+fn array_entries_of_thread(array: &ArrayArgument) -> String {
     format!("lw_entries_of({0}, {0}_entry, i * {0}_state)", array.name)
 }

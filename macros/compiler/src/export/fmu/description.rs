@@ -50,7 +50,7 @@ pub fn model_description_text(
 /// Writes the definition of every known unit to `modelDescription.xml`.
 fn write_units(text: &mut String, variables: &FmuVariables) {
     let mut units: Vec<&str> =
-        variables.all.iter().map(|v| v.unit.as_str()).filter(|u| is_known(u)).collect();
+        variables.all.iter().map(|v| v.unit.as_str()).filter(|u| is_known_unit(u)).collect();
     units.sort_unstable();
     units.dedup();
     for unit in units {
@@ -63,7 +63,7 @@ fn write_units(text: &mut String, variables: &FmuVariables) {
     }
 }
 
-fn is_known(unit: &str) -> bool {
+fn is_known_unit(unit: &str) -> bool {
     !matches!(unit, "any" | "")
 }
 
@@ -88,7 +88,7 @@ fn write_variable(text: &mut String, reference: usize, variable: &ScalarVariable
     };
     let variability = if variable.role == VariableRole::Parameter { "tunable" } else { "continuous" };
     let attributes = format!(r#"causality="{causality}" variability="{variability}"{further}"#);
-    let unit = match is_known(&variable.unit) {
+    let unit = match is_known_unit(&variable.unit) {
         true => format!(r#" unit="{}""#, escape_xml(&variable.unit)),
         false => String::new(),
     };
@@ -102,18 +102,18 @@ fn write_variable(text: &mut String, reference: usize, variable: &ScalarVariable
 /// Writes the outputs, the rates of the states, the variables that initialization computes, and the event
 /// indicators.
 fn write_model_structure(text: &mut String, variables: &FmuVariables) {
-    let mut write = |element: &str, is_listed: &dyn Fn(VariableRole) -> bool| {
+    let mut write_listed_variables = |element: &str, is_listed: &dyn Fn(VariableRole) -> bool| {
         for (reference, _) in variables.all.iter().enumerate().filter(|(_, v)| is_listed(v.role)) {
             let _ = writeln!(text, r#"    <{element} valueReference="{reference}"/>"#);
         }
     };
-    write("Output", &|role| matches!(role, VariableRole::State | VariableRole::Output));
-    write("ContinuousStateDerivative", &|role| matches!(role, VariableRole::Rate(_)));
-    write("InitialUnknown", &|role| match role {
+    write_listed_variables("Output", &|role| matches!(role, VariableRole::State | VariableRole::Output));
+    write_listed_variables("ContinuousStateDerivative", &|role| matches!(role, VariableRole::Rate(_)));
+    write_listed_variables("InitialUnknown", &|role| match role {
         VariableRole::State => variables.is_constrained,
         role => matches!(role, VariableRole::Rate(_) | VariableRole::Output),
     });
-    write("EventIndicator", &|role| role == VariableRole::Indicator);
+    write_listed_variables("EventIndicator", &|role| role == VariableRole::Indicator);
 }
 
 /// Returns the text of `buildDescription.xml`.

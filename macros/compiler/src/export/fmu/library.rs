@@ -1,13 +1,13 @@
 //! FMUs for co-simulation whose binary contains the run-time library.
 
-use super::super::names::{c_name_prefix, snake_case_prefix};
+use super::super::names::{c_name_prefix, to_snake_case};
 use super::description;
-use super::model::{array_definition, chart_index_definitions, escape_character, names_definition};
+use super::model::{array_definition, chart_index_definitions, escape_character, variable_names_definition};
 use super::values::StartValues;
 use super::variables::{ENERGIES, FmuVariables, OutputFunction, VariableRole};
 use super::{FmuFiles, MAIN, SOURCES, instantiation_token};
-use crate::catalogue::{Argument, Id, REACTION, TOUCHED};
-use crate::derive::Output;
+use crate::catalogue::{Argument, GeneratedId, REACTION, TOUCHED};
+use crate::derive::DerivationOutput;
 use crate::mechanism::Model;
 use std::fmt::Write;
 
@@ -15,20 +15,25 @@ use std::fmt::Write;
 /// forces are left out; their names are returned.
 pub fn export_fmu_for_runtime_library(
     model: &Model<'_>,
-    output: &Output,
+    output: &DerivationOutput,
     declaration: &str,
     prefix: &str,
     start: &StartValues,
 ) -> (FmuFiles, Vec<String>) {
     let identifier = match prefix {
-        "" => c_name_prefix(&snake_case_prefix(&model.name)),
+        "" => c_name_prefix(&to_snake_case(&model.name)),
         given => c_name_prefix(given),
     };
     let (mut outputs, mut left_out) = (Vec::new(), Vec::new());
-    for f in output.functions.iter().filter(|f| matches!(f.id, Id::Output | Id::Reaction | Id::Touched)) {
-        let is_known = |a: &Argument| matches!(a, Argument::T | Argument::Q | Argument::V | Argument::U);
+    for f in output
+        .functions
+        .iter()
+        .filter(|f| matches!(f.id, GeneratedId::Output | GeneratedId::Reaction | GeneratedId::Touched))
+    {
+        let is_time_state_or_input =
+            |a: &Argument| matches!(a, Argument::T | Argument::Q | Argument::V | Argument::U);
         let size = f.program.outputs.len();
-        match f.id == Id::Output && f.arguments.iter().all(is_known) {
+        match f.id == GeneratedId::Output && f.arguments.iter().all(is_time_state_or_input) {
             true => outputs.push(OutputFunction { name: f.name.clone(), size, is_differentiable: false }),
             false => {
                 let name = f.name.strip_prefix(REACTION).or(f.name.strip_prefix(TOUCHED));
@@ -51,13 +56,14 @@ pub fn export_fmu_for_runtime_library(
 /// Returns the header `lw_model.h`, with the placeholder `@TOKEN@` for the instantiation token.
 fn library_header(
     model: &Model<'_>,
-    output: &Output,
+    output: &DerivationOutput,
     declaration: &str,
     variables: &FmuVariables,
     start: &StartValues,
 ) -> String {
     let mut text = String::from("#define LW_TOKEN \"@TOKEN@\"\n#define LW_LIBRARY 1\n");
-    let count = |role: VariableRole| variables.all.iter().filter(|v| v.role == role).count();
+    let variable_count_with_role =
+        |role: VariableRole| variables.all.iter().filter(|v| v.role == role).count();
     let balls = model.charts.iter().filter(|chart| chart.first_quaternion_index().is_some()).count();
     let has_contacts = !model.contacts.is_empty();
     let sizes = [
@@ -66,7 +72,7 @@ fn library_header(
         ("NX", start.states.len()),
         ("NU", model.nu()),
         ("NP", variables.parameters.len()),
-        ("NY", count(VariableRole::Output)),
+        ("NY", variable_count_with_role(VariableRole::Output)),
         ("OUTPUTS", variables.outputs.len() + ENERGIES.len()),
         ("CONTACTS", 0),
         ("CONSTRAINTS", model.constraints.len()),
@@ -80,7 +86,7 @@ fn library_header(
     let method = if has_contacts { "time_stepping" } else { "automatic" };
     let _ = writeln!(text, "#define LW_METHOD \"{method}\"\n");
     text.push_str(&chart_index_definitions(&output.charts));
-    text.push_str(&names_definition(variables));
+    text.push_str(&variable_names_definition(variables));
     let roles = [VariableRole::State, VariableRole::Input, VariableRole::Parameter];
     let values = roles.iter().flat_map(|role| variables.all.iter().filter(move |v| v.role == *role));
     text.push_str(&array_definition("lw_start", &values.map(|v| v.start).collect::<Vec<_>>()));

@@ -12,7 +12,7 @@ mod variables;
 
 use super::c;
 use super::mechanism::{ExportObstacle, ExportedMechanism, Options};
-use crate::derive::Output;
+use crate::derive::DerivationOutput;
 use crate::mechanism::Model;
 pub use library::export_fmu_for_runtime_library;
 pub use values::{StartValues, TableValues};
@@ -55,14 +55,14 @@ const SIMULATE: &str = "`--library FILE` puts the run-time library into the FMU,
                         library";
 
 /// Returns the reason why a mechanism cannot be exported as an FMU, and what to do instead.
-pub fn export_obstacle(model: &Model<'_>, output: &Output) -> Option<(String, &'static str)> {
-    use crate::catalogue::Id;
-    let has_function = |id: Id| output.functions.iter().any(|f| f.id == id);
-    if model.kinematic || model.nv() == 0 || !has_function(Id::MassMatrix) {
+pub fn export_obstacle(model: &Model<'_>, output: &DerivationOutput) -> Option<(String, &'static str)> {
+    use crate::catalogue::GeneratedId;
+    let has_function = |id: GeneratedId| output.functions.iter().any(|f| f.id == id);
+    if model.kinematic || model.nv() == 0 || !has_function(GeneratedId::MassMatrix) {
         let what = "an FMU is for mechanisms that move, and this one has no equations of motion";
         return Some((what.to_string(), "give its bodies masses and joints"));
     }
-    if has_function(Id::SlippingResponse) {
+    if has_function(GeneratedId::SlippingResponse) {
         return Some(("the sources of FMUs have no constraints with friction".to_string(), SIMULATE));
     }
     if !model.polytopes.is_empty() {
@@ -90,7 +90,7 @@ pub fn export_obstacle(model: &Model<'_>, output: &Output) -> Option<(String, &'
 /// The mechanism is not supported, for the reason in [`ExportObstacle`].
 pub fn export_fmu(
     model: &Model<'_>,
-    output: &Output,
+    output: &DerivationOutput,
     tables: &[String],
     options: &Options,
     start: &StartValues,

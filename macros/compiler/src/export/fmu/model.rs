@@ -6,7 +6,7 @@ use super::super::mechanism::ExportedMechanism;
 use super::super::tokens::contains_word;
 use super::values::{StartValues, TableValues};
 use super::variables::{FmuVariables, OutputFunction, VariableRole};
-use crate::derive::Output;
+use crate::derive::DerivationOutput;
 use crate::mechanism::{Chart, Model};
 use std::fmt::Write;
 
@@ -19,7 +19,7 @@ struct HeaderWriter<'a> {
 /// Returns the header, with the placeholder `@TOKEN@` for the instantiation token.
 pub fn model_header(
     model: &Model<'_>,
-    output: &Output,
+    output: &DerivationOutput,
     signatures: &ExportedMechanism<'_>,
     variables: &FmuVariables,
     start: &StartValues,
@@ -41,7 +41,7 @@ pub fn model_header(
     w.write_constraint_adapters(model);
     w.write_output_adapters(variables);
     if variables.is_differentiable && variables.has_generated_derivatives {
-        w.write_derivatives(variables);
+        w.write_derivative_adapters(variables);
     }
     w.text
 }
@@ -49,7 +49,7 @@ pub fn model_header(
 impl HeaderWriter<'_> {
     /// Writes the constants for the numbers of variables and of rows.
     fn write_sizes(&mut self, model: &Model<'_>, variables: &FmuVariables, start: &StartValues) {
-        let length_of_result = |name: &str| self.result_length(name);
+        let result_length_of_function = |name: &str| self.result_length_of_function(name);
         let outputs = variables.all.iter().filter(|v| v.role == VariableRole::Output).count();
         let balls = model.charts.iter().filter(|chart| chart.first_quaternion_index().is_some()).count();
         let sizes = [
@@ -61,7 +61,7 @@ impl HeaderWriter<'_> {
             ("NY", outputs),
             ("NUMERIC", variables.count_differenced_outputs()),
             ("RESULTS", start.states.len() + outputs - variables.count_differenced_outputs()),
-            ("CONSTRAINTS", length_of_result("constraint_rates")),
+            ("CONSTRAINTS", result_length_of_function("constraint_rates")),
             ("CONTACTS", model.contacts.len()),
             ("PLAINS", model.charts.len() - balls),
             ("BALLS", balls),
@@ -77,14 +77,14 @@ impl HeaderWriter<'_> {
     }
 
     /// Returns the number of results of a function; zero if it does not exist.
-    fn result_length(&self, name: &str) -> usize {
+    fn result_length_of_function(&self, name: &str) -> usize {
         let found = self.signatures.functions.iter().find(|f| f.name == name);
         found.map_or(0, |f| f.results.iter().map(|array| array.length()).sum())
     }
 
     /// Writes names and start values, and the columns of states and parameters among all parameters.
     fn write_start_values(&mut self, variables: &FmuVariables, start: &StartValues) {
-        self.text.push_str(&names_definition(variables));
+        self.text.push_str(&variable_names_definition(variables));
         let of_role =
             |role: VariableRole| variables.all.iter().filter(move |v| v.role == role).map(|v| v.start);
         let values = of_role(VariableRole::State)
@@ -117,7 +117,7 @@ impl HeaderWriter<'_> {
             }
         }
         tables.iter().for_each(|name| body.push_str(&format!("    m->{name} = lw_table_{name};\n")));
-        self.write_function("lw_put_parameters", "lw_mechanism *m", &["x", "p"], &[], &body);
+        self.write_c_function("lw_put_parameters", "lw_mechanism *m", &["x", "p"], &[], &body);
     }
 
     /// Writes the C adapters of functions of the configuration alone.
@@ -156,7 +156,7 @@ impl HeaderWriter<'_> {
             (
                 "constraint",
                 ["residuals", "rates", "bias", "jacobian"],
-                self.result_length("constraint_rates") > 0,
+                self.result_length_of_function("constraint_rates") > 0,
             ),
             ("contact", ["gaps", "rates", "bias", "jacobian"], !model.contacts.is_empty()),
         ];
@@ -192,7 +192,7 @@ impl HeaderWriter<'_> {
     }
 
     /// Writes the C adapters of functions for derivatives.
-    fn write_derivatives(&mut self, variables: &FmuVariables) {
+    fn write_derivative_adapters(&mut self, variables: &FmuVariables) {
         if variables.is_constrained {
             let results = ["forces_by_q", "forces_by_v", "bias_by_q", "bias_by_v", "rates_by_q"];
             let call = self.c_function_call("motion_derivatives", &[&results[..], &["turning"]].concat());
@@ -275,11 +275,11 @@ impl HeaderWriter<'_> {
 
     /// Writes an adapter that calls a function of the mechanism.
     fn write_function_adapter(&mut self, name: &str, arguments: &[&str], results: &[&str], body: &str) {
-        self.write_function(name, "const lw_mechanism *m", arguments, results, body);
+        self.write_c_function(name, "const lw_mechanism *m", arguments, results, body);
     }
 
     /// Writes a C function. Unused arguments cause no compiler warnings.
-    fn write_function(&mut self, name: &str, own: &str, arguments: &[&str], results: &[&str], body: &str) {
+    fn write_c_function(&mut self, name: &str, own: &str, arguments: &[&str], results: &[&str], body: &str) {
         let argument_declaration = |name: &&str| match *name {
             "t" => "double t".to_string(),
             name => format!("const double *{name}"),
@@ -319,7 +319,7 @@ pub fn chart_index_definitions(charts: &[Chart]) -> String {
 }
 
 /// Returns the names of all variables, in the order of their value references.
-pub fn names_definition(variables: &FmuVariables) -> String {
+pub fn variable_names_definition(variables: &FmuVariables) -> String {
     let mut text = String::from("\nstatic const char *const lw_names[] = {\n");
     for variable in &variables.all {
         let name: String = variable.name.chars().flat_map(escape_character).collect();

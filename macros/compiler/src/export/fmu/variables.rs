@@ -155,9 +155,9 @@ impl FmuVariables {
     /// Lists all variables in the order of their value references.
     fn list_variables(&mut self, model: &Model<'_>, start: &StartValues) {
         let u = &model.units;
-        self.add("time".to_string(), "s", VariableRole::Time, 0.0);
+        self.add_variable("time".to_string(), "s", VariableRole::Time, 0.0);
         for (k, name) in model.configuration.iter().enumerate() {
-            self.add(
+            self.add_variable(
                 format!("q.{name}"),
                 unit_at_index(&u.configuration, k),
                 VariableRole::State,
@@ -165,10 +165,15 @@ impl FmuVariables {
             );
         }
         for (k, (name, _)) in model.velocities.iter().enumerate() {
-            self.add(format!("v.{name}"), unit_at_index(&u.velocities, k), VariableRole::State, start.v[k]);
+            self.add_variable(
+                format!("v.{name}"),
+                unit_at_index(&u.velocities, k),
+                VariableRole::State,
+                start.v[k],
+            );
         }
         for &k in &start.states {
-            self.add(
+            self.add_variable(
                 format!("x.{}", model.parameters[k]),
                 unit_at_index(&u.parameters, k),
                 VariableRole::State,
@@ -178,13 +183,23 @@ impl FmuVariables {
         let states = if self.has_model_exchange { self.all.len() } else { 0 };
         for state in 1..states {
             let ScalarVariable { name, unit, .. } = self.all[state].clone();
-            self.add(format!("der({name})"), &units::unit_of_rate(&unit), VariableRole::Rate(state), 0.0);
+            self.add_variable(
+                format!("der({name})"),
+                &units::unit_of_rate(&unit),
+                VariableRole::Rate(state),
+                0.0,
+            );
         }
         for (k, (name, _)) in model.inputs.iter().enumerate() {
-            self.add(format!("u.{name}"), unit_at_index(&u.inputs, k), VariableRole::Input, start.u[k]);
+            self.add_variable(
+                format!("u.{name}"),
+                unit_at_index(&u.inputs, k),
+                VariableRole::Input,
+                start.u[k],
+            );
         }
         for k in self.parameters.clone() {
-            self.add(
+            self.add_variable(
                 model.parameters[k].clone(),
                 unit_at_index(&u.parameters, k),
                 VariableRole::Parameter,
@@ -198,18 +213,20 @@ impl FmuVariables {
             let name = at.map_or(&output.name, |at| &model.outputs[at].name);
             for k in 0..output.size {
                 let name = if output.size == 1 { name.clone() } else { format!("{name}[{}]", k + 1) };
-                self.add(name, unit, VariableRole::Output, 0.0);
+                self.add_variable(name, unit, VariableRole::Output, 0.0);
             }
         }
-        ENERGIES.iter().for_each(|name| self.add((*name).to_string(), "J", VariableRole::Output, 0.0));
+        ENERGIES
+            .iter()
+            .for_each(|name| self.add_variable((*name).to_string(), "J", VariableRole::Output, 0.0));
         let contacts = if self.has_model_exchange { &model.contacts[..] } else { &[] };
         for contact in contacts {
-            self.add(format!("event.{}", contact.name), "any", VariableRole::Indicator, 0.0);
+            self.add_variable(format!("event.{}", contact.name), "any", VariableRole::Indicator, 0.0);
         }
     }
 
     /// Adds a variable. A name that is taken gets a number.
-    fn add(&mut self, name: String, unit: &str, role: VariableRole, start: f64) {
+    fn add_variable(&mut self, name: String, unit: &str, role: VariableRole, start: f64) {
         let mut free = name.clone();
         let mut number = 2_usize;
         while self.all.iter().any(|known| known.name == free) {

@@ -4,12 +4,12 @@
 //! Bodies are those in C (`export::c`), converted token by token. WGSL has single precision only.
 
 use super::body::{MISSING, Scope, write_program};
-use super::c::{self, result_program};
+use super::c::{self, program_of_own_results};
 use super::mechanism::{ExportObstacle, ExportedMechanism, Options};
-use super::signatures::{Array, ExportedSignature, python_array_list};
+use super::signatures::{ArrayArgument, ExportedSignature, python_array_list};
 use super::tokens::leading_number_length;
-use crate::catalogue::{Called, InverseForm, Shape};
-use crate::derive::{Function, Output};
+use crate::catalogue::{CalledFunction, InverseForm, Shape};
+use crate::derive::{DerivationOutput, Function};
 use crate::mechanism::Model;
 use std::fmt::Write;
 
@@ -43,7 +43,7 @@ const FUNCTIONS: [(&str, &str); 6] = [
 /// The mechanism is not supported, for the reason in [`ExportObstacle`].
 pub fn export_wgsl_shaders(
     model: &Model<'_>,
-    output: &Output,
+    output: &DerivationOutput,
     tables: &[String],
     options: &Options,
 ) -> Result<ShaderFiles, ExportObstacle> {
@@ -89,9 +89,9 @@ fn straight_line_functions(
             None => left_out.push(format!("{}: {calling}", signature.name)),
         }
     }
-    let is_plain = i.is_plain() && !i.has_speeds();
+    let is_plain = i.has_only_plain_coordinates() && !i.has_generalized_speeds();
     if !is_plain {
-        let reason = if i.has_speeds() { "generalized speeds" } else { "ball or free joints" };
+        let reason = if i.has_generalized_speeds() { "generalized speeds" } else { "ball or free joints" };
         left_out
             .push(format!("integrate and the other functions of the configuration space: it has {reason}"));
     }
@@ -120,7 +120,7 @@ fn straight_line_body(f: &Function, i: &ExportedMechanism<'_>) -> Option<String>
         Shape::Forward(_) | Shape::Linear(..) | Shape::Accelerated(_) => true,
         shape => shape.is_assembled_from_calls(),
     };
-    if is_composed || Called::ALL.iter().any(|called| f.reads_results_of(*called)) {
+    if is_composed || CalledFunction::ALL.iter().any(|called| f.reads_results_of(*called)) {
         return None;
     }
     let scope =
@@ -128,7 +128,7 @@ fn straight_line_body(f: &Function, i: &ExportedMechanism<'_>) -> Option<String>
     let signature = ExportedSignature::from_function(f, i);
     let output_target = |k: usize| signature.element_of_output(k).filter(|_| !signature.returns);
     let mut body = String::new();
-    let first = write_program(&mut body, &result_program(f, i), &scope, &output_target);
+    let first = write_program(&mut body, &program_of_own_results(f, i), &scope, &output_target);
     if signature.returns {
         let _ = writeln!(body, "    result[0] = {first};");
     }
@@ -137,7 +137,7 @@ fn straight_line_body(f: &Function, i: &ExportedMechanism<'_>) -> Option<String>
 
 /// Returns the shader of a function, or the reason why the function has no shader.
 fn shader_text(p: &str, f: &ExportedSignature, body: &str, parameters: &[String]) -> Result<String, String> {
-    let mut text = f.comment(&f.results);
+    let mut text = f.function_comment(&f.results);
     let _ = writeln!(
         text,
         "@compute @workgroup_size(64)\nfn {p}_{}(@builtin(global_invocation_id) id: vec3<u32>) {{\n    let i \
@@ -256,9 +256,9 @@ impl Converter<'_> {
 
     /// Returns the buffer of an array, and the index of its first entry.
     fn buffer_and_offset(&self, name: &str) -> Option<(&'static str, usize)> {
-        let offset_of_named_array = |list: &[Array]| {
+        let offset_of_named_array = |list: &[ArrayArgument]| {
             let at = list.iter().position(|array| array.name == name)?;
-            Some(list[..at].iter().map(Array::length).sum())
+            Some(list[..at].iter().map(ArrayArgument::length).sum())
         };
         match offset_of_named_array(&self.signature.arguments) {
             Some(at) => Some(("arguments", at)),
@@ -296,11 +296,12 @@ fn python_module(p: &str, functions: &[&ExportedSignature], parameters: &[String
 
 #[cfg(test)]
 mod tests {
-    use super::{Array, Converter, ExportedSignature};
+    use super::{ArrayArgument, Converter, ExportedSignature};
 
     #[test]
     fn c_statements_are_converted_to_wgsl() {
-        let two_vectors = |names: [&str; 2], length| names.map(|name| Array::vector(name, length)).to_vec();
+        let two_vectors =
+            |names: [&str; 2], length| names.map(|name| ArrayArgument::vector(name, length)).to_vec();
         let signature = ExportedSignature {
             name: "f".to_string(),
             arguments: two_vectors(["q", "v"], 2),

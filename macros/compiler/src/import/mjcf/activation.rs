@@ -1,11 +1,11 @@
 //! Laws of actuators with states of first order or with several inputs, as expressions.
 
-use super::defaults::Element;
+use super::defaults::ElementWithDefaults;
 use super::formula::ActuatorLawExpression;
 use crate::diag::Place;
 use crate::import::context::{Cx, quote_word};
 use crate::import::imported::Located;
-use crate::syntax::DriveQuantity;
+use crate::syntax::FileForceQuantity;
 
 pub(super) const OTHER_INPUTS: &str =
     "to ignore the actuators of the file, write `#[mechanism(…, inputs = joints)]`, or `none`";
@@ -70,17 +70,17 @@ impl ActuatorLaw {
     }
 
     /// Returns the actuator length as an expression.
-    pub(super) fn length(&self) -> ActuatorLawExpression {
+    pub(super) fn actuator_length_formula(&self) -> ActuatorLawExpression {
         ActuatorLawExpression::formula_of_name(
-            DriveQuantity::Length.drive_quantity_name(&self.actuator),
+            FileForceQuantity::Length.file_force_quantity_name(&self.actuator),
             &self.place,
         )
     }
 
     /// Returns the time derivative of the actuator length as an expression.
-    pub(super) fn length_rate(&self) -> ActuatorLawExpression {
+    pub(super) fn actuator_length_rate_formula(&self) -> ActuatorLawExpression {
         ActuatorLawExpression::formula_of_name(
-            DriveQuantity::Rate.drive_quantity_name(&self.actuator),
+            FileForceQuantity::Rate.file_force_quantity_name(&self.actuator),
             &self.place,
         )
     }
@@ -94,11 +94,18 @@ impl ActuatorLaw {
     ) -> ActuatorLawExpression {
         let name = (named.input)(word);
         self.inputs.push((name.clone(), unit));
-        ActuatorLawExpression::formula_of_name(DriveQuantity::Input.drive_quantity_name(&name), &self.place)
+        ActuatorLawExpression::formula_of_name(
+            FileForceQuantity::Input.file_force_quantity_name(&name),
+            &self.place,
+        )
     }
 
     /// Returns the value of an actuator state as an expression.
-    pub(super) fn state_value(&self, word: &str, named: &ActuatorNames<'_>) -> ActuatorLawExpression {
+    pub(super) fn actuator_state_formula(
+        &self,
+        word: &str,
+        named: &ActuatorNames<'_>,
+    ) -> ActuatorLawExpression {
         ActuatorLawExpression::formula_of_name((named.field)(word), &self.place)
     }
 
@@ -119,7 +126,7 @@ impl ActuatorLaw {
     /// Returns the affine force law `b₀ + b₁ length + b₂ rate` of an actuator.
     pub(super) fn affine_formula(&self, prm: &[f64; 10]) -> ActuatorLawExpression {
         let [b0, b1, b2, ..] = *prm;
-        self.length() * b1 + self.length_rate() * b2 + b0
+        self.actuator_length_formula() * b1 + self.actuator_length_rate_formula() * b2 + b0
     }
 }
 
@@ -128,12 +135,12 @@ pub(super) const CONTROLS: [&str; 4] = ["pos", "vel", "ff", "voltage"];
 
 /// Returns the requested inputs of a controller. The order is MuJoCo's.
 pub(super) fn requested_controller_inputs(
-    actuator: &Element<'_>,
+    actuator: &ElementWithDefaults<'_>,
     usual: &'static str,
     known: &[&'static str],
     cx: &mut Cx<'_>,
 ) -> Option<Vec<&'static str>> {
-    let text = actuator.trimmed_text("input").filter(|text| !text.is_empty()).unwrap_or(usual);
+    let text = actuator.trimmed_attribute_text("input").filter(|text| !text.is_empty()).unwrap_or(usual);
     let mut found: Vec<&'static str> = Vec::new();
     for word in text.split_ascii_whitespace() {
         let control_word_index = |word: &str| CONTROLS.iter().position(|known| *known == word);
@@ -143,7 +150,9 @@ pub(super) fn requested_controller_inputs(
             _ => {
                 let message = format!("`input` {} is not a list of inputs", quote_word(text));
                 let help = format!("expected some of `{}`, in this order", known.join("`, `"));
-                cx.report_error(&actuator.place_of_value("input", cx), message, |d| d.add_help(help));
+                cx.report_error(&actuator.place_of_attribute_value("input", cx), message, |d| {
+                    d.add_help(help)
+                });
                 return None;
             }
         }
@@ -153,8 +162,8 @@ pub(super) fn requested_controller_inputs(
 
 /// Reports a nonzero limit of a controller that depends on the length of MuJoCo's time step or is not
 /// continuous.
-pub(super) fn report_controller_limit(
-    actuator: &Element<'_>,
+pub(super) fn report_unsupported_controller_limit(
+    actuator: &ElementWithDefaults<'_>,
     attribute: &str,
     what: &str,
     value: f64,
@@ -164,7 +173,7 @@ pub(super) fn report_controller_limit(
         return Some(());
     }
     let message = format!("{what} is not supported: the rate of its state is not continuous");
-    cx.report_error(&actuator.place_of_value(attribute, cx), message, |d| {
+    cx.report_error(&actuator.place_of_attribute_value(attribute, cx), message, |d| {
         d.add_help("write `0`, and limit the command in your program").add_help(OTHER_INPUTS)
     });
     None

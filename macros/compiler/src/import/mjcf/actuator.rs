@@ -5,7 +5,7 @@
 //! *Computation*, "Actuation model").
 
 use super::activation::{ActuatorLaw, ActuatorNames, OTHER_INPUTS};
-use super::defaults::Element;
+use super::defaults::ElementWithDefaults;
 use super::formula::ActuatorLawExpression;
 use super::law::{ActuatorForceLaw, read_actuator_force};
 use super::reader::MjcfReader;
@@ -15,7 +15,9 @@ use crate::import::element::{Node, child_elements, element_source_position, read
 use crate::import::imported::Located;
 use crate::import::robot::{identifier_of_names, unused_name};
 use crate::syntax::file_parameters::{FileField, FileFieldKind};
-use crate::syntax::{Drive, DriveLaw, DriveTarget, Expr, FileInputSource, JointKind, LimitOption, Name};
+use crate::syntax::{
+    Expr, FileForceElement, FileForceLaw, FileForceTarget, FileInputSource, JointKind, LimitOption, Name,
+};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Actuator types of MuJoCo that are not supported, with the reasons.
@@ -81,7 +83,7 @@ impl<'a> MjcfReader<'a> {
 
     fn read_actuator(
         &mut self,
-        any: &Element<'a>,
+        any: &ElementWithDefaults<'a>,
         tendons: &[Tendon],
         (names, efforts): (&mut BTreeSet<String>, &mut JointEffortLimits),
         cx: &mut Cx<'_>,
@@ -109,7 +111,7 @@ impl<'a> MjcfReader<'a> {
         let said = node.has_attribute("name").then(|| read_name_attribute(node, "name", cx)).flatten();
         let named = said.unwrap_or_else(|| {
             let joint = on.weighted_joints().first().map(|(joint, _)| joint.text.as_str());
-            let target = joint.or(any.trimmed_text("site")).unwrap_or("motor");
+            let target = joint.or(any.trimmed_attribute_text("site")).unwrap_or("motor");
             Name {
                 text: unused_name(&format!("{target}_{kind}"), |name| names.contains(name)),
                 place: element_source_position(node, cx),
@@ -121,13 +123,17 @@ impl<'a> MjcfReader<'a> {
             let is_state_name_taken = |name: &str| states.iter().any(|(field, _)| field.ident == name);
             unused_name(&identifier_of_names(&named.text, word, "actuator"), is_state_name_taken)
         };
-        let input = |word: &str| match word {
+        let unused_input_name = |word: &str| match word {
             "" => named.text.clone(),
             word => unused_name(&format!("{}_{word}", named.text), |name| names.contains(name)),
         };
         let length = if turns { "rad" } else { "m" };
-        let quantities =
-            ActuatorNames { actuator: &named.text, length, field: &unused_state_name, input: &input };
+        let quantities = ActuatorNames {
+            actuator: &named.text,
+            length,
+            field: &unused_state_name,
+            input: &unused_input_name,
+        };
         let Some(force) = read_actuator_force(any, &classes, &quantities, cx) else { return };
         match force {
             ActuatorForceLaw::Affine { gain, bias } => {
@@ -151,32 +157,35 @@ impl<'a> MjcfReader<'a> {
     fn add_affine_actuator(
         &mut self,
         name: &Name,
-        on: DriveTarget,
+        on: FileForceTarget,
         (gain, [constant, stiffness, damping]): (f64, [f64; 3]),
         unit: &'static str,
     ) {
-        let mut drive = |on: DriveTarget, law: DriveLaw| {
-            self.robot.drives.push(Drive { name: name.clone(), on, law });
+        let mut push_drive = |on: FileForceTarget, law: FileForceLaw| {
+            self.robot.drives.push(FileForceElement { name: name.clone(), on, law });
         };
-        drive(on.with_scaled_weights(gain), DriveLaw::Input(unit));
+        push_drive(on.with_scaled_weights(gain), FileForceLaw::Input(unit));
         // The length of an actuator on a site is zero.
-        let stiffness = if matches!(on, DriveTarget::Wrench(_)) { 0.0 } else { stiffness };
+        let stiffness = if matches!(on, FileForceTarget::Wrench(_)) { 0.0 } else { stiffness };
         if stiffness != 0.0 {
-            drive(on.clone(), DriveLaw::Spring { stiffness: -stiffness, free: constant / -stiffness });
+            push_drive(
+                on.clone(),
+                FileForceLaw::Spring { stiffness: -stiffness, free: constant / -stiffness },
+            );
         } else if constant != 0.0 {
-            drive(on.clone(), DriveLaw::Push(constant));
+            push_drive(on.clone(), FileForceLaw::Push(constant));
         }
         if damping != 0.0 {
-            drive(on, DriveLaw::Damper(-damping));
+            push_drive(on, FileForceLaw::Damper(-damping));
         }
     }
 
     /// Adds the inputs, the states and the force of an actuator.
-    fn add_actuator_law(&mut self, name: Name, on: DriveTarget, law: ActuatorLaw) {
+    fn add_actuator_law(&mut self, name: Name, on: FileForceTarget, law: ActuatorLaw) {
         for (input, unit) in law.inputs {
             let name = Name { text: input, place: name.place.clone() };
-            let on = DriveTarget::Sum(Vec::new());
-            self.robot.drives.push(Drive { name, on, law: DriveLaw::Input(unit) });
+            let on = FileForceTarget::Sum(Vec::new());
+            self.robot.drives.push(FileForceElement { name, on, law: FileForceLaw::Input(unit) });
         }
         for state in law.states {
             let field = FileField {
@@ -191,18 +200,18 @@ impl<'a> MjcfReader<'a> {
             self.robot.states.push((field, rate));
         }
         let ActuatorLawExpression(force) = law.force;
-        let law = DriveLaw::Expression { force: Box::new(force), offset: 0.0 };
-        self.robot.drives.push(Drive { name, on, law });
+        let law = FileForceLaw::Expression { force: Box::new(force), offset: 0.0 };
+        self.robot.drives.push(FileForceElement { name, on, law });
     }
 
     /// Returns what an actuator acts on, scaled by the gear ratio, and whether its force is a torque.
     fn read_transmission(
         &self,
-        element: &Element<'a>,
+        element: &ElementWithDefaults<'a>,
         tendons: &[Tendon],
         servo: bool,
         cx: &mut Cx<'_>,
-    ) -> Option<(DriveTarget, bool)> {
+    ) -> Option<(FileForceTarget, bool)> {
         let said: Vec<&str> =
             TARGETS.into_iter().filter(|target| element.node.has_attribute(*target)).collect();
         match said.as_slice() {
@@ -240,7 +249,7 @@ impl<'a> MjcfReader<'a> {
                 known.name.text == joint.text && known.kind == JointKind::Pin
             };
             let turns = self.robot.joints.iter().any(is_pin);
-            return Some((DriveTarget::Sum(vec![(joint, gear)]), turns));
+            return Some((FileForceTarget::Sum(vec![(joint, gear)]), turns));
         }
         if let Some(tendon) = element.attribute_text_with_span("tendon", cx) {
             return Some((
@@ -255,7 +264,12 @@ impl<'a> MjcfReader<'a> {
 
     /// Adds the rotor inertia and the viscous damping of an actuator. They act on the joint or tendon even if
     /// the actuator is not used.
-    fn add_rotor_inertia_and_damping(&mut self, element: &Element<'a>, tendons: &[Tendon], cx: &mut Cx<'_>) {
+    fn add_rotor_inertia_and_damping(
+        &mut self,
+        element: &ElementWithDefaults<'a>,
+        tendons: &[Tendon],
+        cx: &mut Cx<'_>,
+    ) {
         let gear =
             element.numbers_with_defaults("gear", [1.0; 6], cx).map_or(1.0, |gear| gear.value[0].abs());
         let damping =
@@ -267,8 +281,8 @@ impl<'a> MjcfReader<'a> {
         });
         let rotor = element.nonzero_attribute_number("armature", cx);
         let laws = [
-            damping.map(|found| (DriveLaw::damper(found.value), found.place)),
-            rotor.as_ref().map(|found| (DriveLaw::Inerter(found.value), found.place.clone())),
+            damping.map(|found| (FileForceLaw::polynomial_damper_law(found.value), found.place)),
+            rotor.as_ref().map(|found| (FileForceLaw::Inerter(found.value), found.place.clone())),
         ];
         let laws: Vec<_> = laws.into_iter().flatten().collect();
         let Some((_, at)) = laws.first() else { return };
@@ -281,20 +295,21 @@ impl<'a> MjcfReader<'a> {
             cx.report_error(&rotor.place, format!("negative armature `{}`", rotor.value), |d| d);
         }
         let Some((on, _)) = self.read_transmission(element, tendons, false, cx) else { return };
-        let target =
-            ["joint", "jointinparent", "tendon"].into_iter().find_map(|target| element.trimmed_text(target));
+        let target = ["joint", "jointinparent", "tendon"]
+            .into_iter()
+            .find_map(|target| element.trimmed_attribute_text(target));
         let text = target.unwrap_or("motor");
         for (law, place) in laws {
             let name = Name { text: text.to_string(), place };
-            self.robot.drives.push(Drive { name, on: on.clone(), law });
+            self.robot.drives.push(FileForceElement { name, on: on.clone(), law });
         }
     }
 
     /// Adds the maximum force of an actuator to the maximum efforts of the joints that it acts on.
     fn add_effort_limit(
         &mut self,
-        element: &Element<'a>,
-        on: &DriveTarget,
+        element: &ElementWithDefaults<'a>,
+        on: &FileForceTarget,
         ((gain, bias), saturation): ((f64, [f64; 3]), Option<Located<f64>>),
         efforts: &mut JointEffortLimits,
         cx: &mut Cx<'_>,
@@ -318,38 +333,39 @@ impl<'a> MjcfReader<'a> {
             (Some(a), Some(b)) => Some(if a.value <= b.value { a } else { b }),
             (a, b) => a.or(b),
         };
-        let add = |joint: String, more: Option<Located<f64>>, efforts: &mut JointEffortLimits| match efforts
-            .get_mut(&joint)
-        {
-            Some(known) => {
-                *known = known
-                    .take()
-                    .zip(more)
-                    .map(|(known, more)| Located { value: known.value + more.value, place: known.place });
-            }
-            None => {
-                efforts.insert(joint, more);
-            }
-        };
-        if let DriveTarget::Sum(terms) = on {
+        let add_to_joint_effort_limit =
+            |joint: String, more: Option<Located<f64>>, efforts: &mut JointEffortLimits| match efforts
+                .get_mut(&joint)
+            {
+                Some(known) => {
+                    *known = known
+                        .take()
+                        .zip(more)
+                        .map(|(known, more)| Located { value: known.value + more.value, place: known.place });
+                }
+                None => {
+                    efforts.insert(joint, more);
+                }
+            };
+        if let FileForceTarget::Sum(terms) = on {
             for (joint, weight) in terms {
                 let more = limit.clone().map(|limit| Located { value: limit.value * weight.abs(), ..limit });
-                add(joint.text.clone(), more, efforts);
+                add_to_joint_effort_limit(joint.text.clone(), more, efforts);
             }
             return;
         }
         self.count_skipped_contents("limits of actuators on cables and sites", usize::from(limit.is_some()));
         for joint in self.joint_names_to_ground(on) {
-            add(joint, None, efforts);
+            add_to_joint_effort_limit(joint, None, efforts);
         }
     }
 
     /// Returns the names of all joints between the ground and the bodies that a length or a wrench refers to.
-    fn joint_names_to_ground(&self, on: &DriveTarget) -> Vec<String> {
+    fn joint_names_to_ground(&self, on: &FileForceTarget) -> Vec<String> {
         let ends = match on {
-            DriveTarget::Sum(_) => Vec::new(),
-            DriveTarget::Length(e) => e.all_subexpressions(),
-            DriveTarget::Wrench(wrench) => std::iter::once(&wrench.on)
+            FileForceTarget::Sum(_) => Vec::new(),
+            FileForceTarget::Length(e) => e.all_subexpressions(),
+            FileForceTarget::Wrench(wrench) => std::iter::once(&wrench.on)
                 .chain(&wrench.against)
                 .flat_map(Expr::all_subexpressions)
                 .collect(),

@@ -1,6 +1,6 @@
 //! `<worldbody>` → links and joints, in the order of the file.
 
-use super::defaults::{Element, boolean_choice};
+use super::defaults::{ElementWithDefaults, read_boolean_attribute};
 use super::frame::read_pose;
 use super::geometry;
 use super::joint::{BodyJoint, IGNORE_PASSIVE, is_joint_element};
@@ -12,7 +12,7 @@ use crate::import::element::{
 };
 use crate::import::imported::Located;
 use crate::import::pose::{
-    FilePose, add, axis_rotation, matrix_product, matrix_times_vector, vector_times_scalar,
+    NumericPose, axis_rotation, matrix_product, matrix_times_vector, vector_sum, vector_times_scalar,
 };
 use crate::import::robot::{FileJoint, FileLimits, MAX_ELEMENTS, massless_link, unused_name};
 use crate::syntax::{Base, BinaryOp, Expr, ExprKind, GROUND, InertiaOption, JointKind, Name};
@@ -28,24 +28,24 @@ struct PendingBody<'a> {
     /// Name of the parent link of the body.
     parent: Name,
     /// Pose of the surrounding `<frame>` elements relative to the parent.
-    outer: FilePose,
+    outer: NumericPose,
     /// Pose of the parent relative to the world, in the configuration of the file.
-    world: FilePose,
+    world: NumericPose,
     class: usize,
 }
 
 /// Shape or site, with the pose of its surrounding `<frame>` elements relative to the body.
-pub(super) type ElementWithPose<'a> = (Element<'a>, FilePose);
+pub(super) type ElementWithPose<'a> = (ElementWithDefaults<'a>, NumericPose);
 
 /// Contents of a body, including the contents of its `<frame>` elements.
 #[derive(Default)]
 struct BodyContents<'a> {
-    bodies: Vec<(Node<'a>, FilePose, usize)>,
+    bodies: Vec<(Node<'a>, NumericPose, usize)>,
     shapes: Vec<ElementWithPose<'a>>,
     sites: Vec<ElementWithPose<'a>>,
-    inertial: Option<(Node<'a>, FilePose)>,
+    inertial: Option<(Node<'a>, NumericPose)>,
     /// Joints, each with the pose of its surrounding `<frame>` elements relative to the body, and its class.
-    jointed: Vec<(Node<'a>, FilePose, usize)>,
+    jointed: Vec<(Node<'a>, NumericPose, usize)>,
 }
 
 impl<'a> MjcfReader<'a> {
@@ -71,7 +71,7 @@ impl<'a> MjcfReader<'a> {
             cx.report_error(&element_source_position(root, cx), "`<mujoco>` without `<worldbody>`", |d| d);
             return None;
         }
-        self.collect_paired_shapes(root);
+        self.collect_paired_shape_names(root);
         let mut open: Vec<PendingBody<'a>> = Vec::new();
         for node in worlds.into_iter().rev() {
             let class = self.defaults.class_index(node, "childclass", 0, cx);
@@ -85,12 +85,12 @@ impl<'a> MjcfReader<'a> {
             }
             self.collect_sites(&inside, GROUND, cx);
             self.add_collision_shapes(0, &inside.shapes, cx);
-            self.record_shapes(GROUND, &inside.shapes, cx);
+            self.record_named_shapes(GROUND, &inside.shapes, cx);
             open.extend(inside.bodies.into_iter().rev().map(|(node, outer, class)| PendingBody {
                 node,
                 parent: world.clone(),
                 outer,
-                world: FilePose::ZERO,
+                world: NumericPose::ZERO,
                 class,
             }));
         }
@@ -140,7 +140,7 @@ impl<'a> MjcfReader<'a> {
     fn read_body(&mut self, open: PendingBody<'a>, cx: &mut Cx<'_>) -> Vec<PendingBody<'a>> {
         let node = open.node;
         self.bodies += 1;
-        let mocap = boolean_choice(node, "mocap", cx) == Some(true);
+        let mocap = read_boolean_attribute(node, "mocap", cx) == Some(true);
         let class = self.defaults.class_index(node, "childclass", open.class, cx);
         let said = node.attribute("name").and_then(|_| read_name_attribute(node, "name", cx));
         let body = self.body_name(said, node, cx);
@@ -185,7 +185,7 @@ impl<'a> MjcfReader<'a> {
         }
         self.add_collision_shapes(self.robot.links.len(), &inside.shapes, cx);
         self.add_visual_shapes(self.robot.links.len(), &inside.shapes, cx);
-        self.record_shapes(&body.text, &inside.shapes, cx);
+        self.record_named_shapes(&body.text, &inside.shapes, cx);
         self.robot.links.push(link);
         self.masses.push(mass);
         self.poses.insert(body.text.clone(), world);
@@ -213,14 +213,14 @@ impl<'a> MjcfReader<'a> {
     /// Collects the elements in a body, each with the pose of its surrounding `<frame>` elements.
     fn contents_of_body(&mut self, node: Node<'a>, class: usize, cx: &mut Cx<'_>) -> BodyContents<'a> {
         let mut found = BodyContents::default();
-        self.gather_body_contents(node, &FilePose::ZERO, class, &mut found, cx);
+        self.gather_body_contents(node, &NumericPose::ZERO, class, &mut found, cx);
         found
     }
 
     fn gather_body_contents(
         &mut self,
         node: Node<'a>,
-        outer: &FilePose,
+        outer: &NumericPose,
         class: usize,
         found: &mut BodyContents<'a>,
         cx: &mut Cx<'_>,
@@ -277,7 +277,7 @@ impl<'a> MjcfReader<'a> {
     fn report_aligned_free_joint(&self, inside: &BodyContents<'a>, cx: &mut Cx<'_>) {
         for (joint, ..) in &inside.jointed {
             let aligned = joint.tag_name().name() == "freejoint"
-                && boolean_choice(*joint, "align", cx).unwrap_or(self.settings.align_free);
+                && read_boolean_attribute(*joint, "align", cx).unwrap_or(self.settings.align_free);
             if aligned && inside.bodies.is_empty() {
                 let message = "a free body in principal axes is not supported";
                 cx.report_error(&element_source_position(*joint, cx), message, |d| {
@@ -301,7 +301,7 @@ impl<'a> MjcfReader<'a> {
         &mut self,
         parent: &Name,
         body: &Name,
-        pose: &FilePose,
+        pose: &NumericPose,
         joints: Vec<BodyJoint>,
         cx: &mut Cx<'_>,
     ) {
@@ -324,7 +324,7 @@ impl<'a> MjcfReader<'a> {
         let mut carrier = parent.clone();
         for (k, joint) in joints.into_iter().enumerate() {
             let child = if k + 1 == number { body.clone() } else { self.add_massless_link(body, &joint) };
-            let outer = if k == 0 { *pose } else { FilePose::ZERO };
+            let outer = if k == 0 { *pose } else { NumericPose::ZERO };
             if let Some(damping) = &joint.spread {
                 self.add_isotropic_damping(&joint, damping, &carrier, &child);
             }
@@ -442,19 +442,19 @@ fn source_position_of_mass(inside: &BodyContents<'_>, node: Node<'_>, cx: &Cx<'_
 }
 
 /// Returns a joint that fixes one link to another.
-fn weld_joint(name: Name, parent: Name, child: Name, pose: &FilePose) -> FileJoint {
+fn weld_joint(name: Name, parent: Name, child: Name, pose: &NumericPose) -> FileJoint {
     let origin = origin_of_pose(pose, &name.place);
     FileJoint::weld(name, "weld", [parent, child], origin)
 }
 
 /// Returns the joint with its endpoints. In the configuration of the file, its coordinate equals its
 /// reference instead of zero. The coordinates of a free joint are the pose of the body in the world.
-fn joint_with_ends(joint: BodyJoint, carrier: &Name, child: &Name, outer: &FilePose) -> FileJoint {
+fn joint_with_ends(joint: BodyJoint, carrier: &Name, child: &Name, outer: &NumericPose) -> FileJoint {
     let axis = joint.axis.value;
-    let mut inner = FilePose { at: joint.anchor.value, ..FilePose::ZERO };
-    match joint.kind.rotates_about_one_axis() {
+    let mut inner = NumericPose { at: joint.anchor.value, ..NumericPose::ZERO };
+    match joint.kind.single_axis_joint_is_rotational() {
         Some(true) if joint.reference != 0.0 => inner.axes = axis_rotation(axis, -joint.reference),
-        Some(false) => inner.at = add(inner.at, vector_times_scalar(axis, -joint.reference)),
+        Some(false) => inner.at = vector_sum(inner.at, vector_times_scalar(axis, -joint.reference)),
         Some(true) | None => {}
     }
     let free = joint.kind == JointKind::Free;
@@ -464,10 +464,10 @@ fn joint_with_ends(joint: BodyJoint, carrier: &Name, child: &Name, outer: &FileP
         _ => Vec::new(),
     };
     let pose = if free {
-        FilePose::ZERO
+        NumericPose::ZERO
     } else {
-        FilePose {
-            at: add(outer.at, matrix_times_vector(&outer.axes, inner.at)),
+        NumericPose {
+            at: vector_sum(outer.at, matrix_times_vector(&outer.axes, inner.at)),
             axes: matrix_product(&outer.axes, &inner.axes),
         }
     };
@@ -479,6 +479,6 @@ fn joint_with_ends(joint: BodyJoint, carrier: &Name, child: &Name, outer: &FileP
         damping: joint.damping,
         friction: joint.friction,
         initial,
-        ..FileJoint::from_links(joint.name, (joint.kind, joint.word), links, origin, joint.axis)
+        ..FileJoint::joint_between_links(joint.name, (joint.kind, joint.word), links, origin, joint.axis)
     }
 }

@@ -1,12 +1,12 @@
 //! Collision geometry → shapes that contacts refer to.
 
 use super::body::ElementWithPose;
-use super::defaults::Element;
+use super::defaults::ElementWithDefaults;
 use super::reader::{MjcfReader, origin_of_pose};
-use super::touch::{ContactForm, ContactShape, MjcfContactParameters};
+use super::touch::{ContactGeometry, ContactShape, MjcfContactParameters};
 use crate::import::context::Cx;
 use crate::import::element::element_source_position;
-use crate::import::pose::FilePose;
+use crate::import::pose::NumericPose;
 use crate::import::robot::FileCollisionShape;
 use crate::syntax::{ContactOption, Shape};
 
@@ -32,7 +32,7 @@ impl<'a> MjcfReader<'a> {
             let name = shape.node.attribute("name");
             let is_paired = name.is_some_and(|name| self.paired_shapes.contains(name));
             let masks = MjcfContactParameters::read_masks(shape, cx);
-            let form = shape.trimmed_text("type").unwrap_or("sphere");
+            let form = shape.trimmed_attribute_text("type").unwrap_or("sphere");
             let is_plane = form == "plane";
             if masks == [0; 2] && !is_paired || is_plane && !has_contacts || ["hfield", "sdf"].contains(&form)
             {
@@ -41,13 +41,13 @@ impl<'a> MjcfReader<'a> {
             }
             if is_plane {
                 let pose = outer.compose_with(&super::frame::read_pose(shape, &self.settings, cx));
-                self.record_contact_shape(link, shape, ContactForm::Plane(pose), cx);
+                self.record_contact_shape(link, shape, ContactGeometry::Plane(pose), cx);
                 continue;
             }
             let Some((kind, pose)) = self.collision_shape(shape, cx) else { continue };
             let at = element_source_position(shape.node, cx);
             let mesh = match kind {
-                Shape::Mesh if is_mesh(shape) => self.meshes.vertices_of_shape(shape, cx),
+                Shape::Mesh if is_mesh(shape) => self.meshes.vertex_source_of_mesh_shape(shape, cx),
                 _ => None,
             };
             let pose = outer.compose_with(&pose);
@@ -60,7 +60,7 @@ impl<'a> MjcfReader<'a> {
                 }
             } else {
                 let number = self.robot.collisions.iter().filter(|(known, _)| *known == link).count();
-                let form = ContactForm::Solid { number, shape: kind, center: pose.at };
+                let form = ContactGeometry::Solid { number, shape: kind, center: pose.at };
                 self.record_contact_shape(link, shape, form, cx);
             }
             let origin = origin_of_pose(&pose, &at);
@@ -70,15 +70,23 @@ impl<'a> MjcfReader<'a> {
     }
 
     /// Records a shape for the contacts of the file.
-    fn record_contact_shape(&mut self, link: usize, shape: &Element<'a>, form: ContactForm, cx: &mut Cx<'_>) {
+    fn record_contact_shape(
+        &mut self,
+        link: usize,
+        shape: &ElementWithDefaults<'a>,
+        form: ContactGeometry,
+        cx: &mut Cx<'_>,
+    ) {
         if self.options.contacts == ContactOption::Ignore {
             return;
         }
         if shape.nonzero_attribute_number("margin", cx).is_some() {
             self.count_skipped_contents("margins of contacts", 1);
         }
-        let (law, place) =
-            (MjcfContactParameters::read_contact_law(shape, cx), element_source_position(shape.node, cx));
+        let (law, place) = (
+            MjcfContactParameters::read_contact_parameters(shape, cx),
+            element_source_position(shape.node, cx),
+        );
         let name = shape.node.attribute("name").map(str::to_string);
         self.contact_shapes.push(ContactShape { link, form, name, law, place });
     }
@@ -86,14 +94,14 @@ impl<'a> MjcfReader<'a> {
     /// Returns a collision shape and its pose relative to the surrounding `<frame>` elements.
     pub(super) fn collision_shape(
         &self,
-        shape: &super::defaults::Element<'a>,
+        shape: &super::defaults::ElementWithDefaults<'a>,
         cx: &mut Cx<'_>,
-    ) -> Option<(Shape, FilePose)> {
-        let kind = shape.trimmed_text("type").unwrap_or("sphere");
+    ) -> Option<(Shape, NumericPose)> {
+        let kind = shape.trimmed_attribute_text("type").unwrap_or("sphere");
         if kind == "mesh" || shape.node_with_attribute("mesh").is_some() {
             let pose = match is_mesh(shape) {
                 true => super::frame::read_pose(shape, &self.settings, cx),
-                false => FilePose::ZERO,
+                false => NumericPose::ZERO,
             };
             return Some((Shape::Mesh, pose));
         }
@@ -110,6 +118,6 @@ impl<'a> MjcfReader<'a> {
 }
 
 /// Whether a shape is a mesh, and not another shape that is fitted to a mesh.
-fn is_mesh(shape: &Element<'_>) -> bool {
-    shape.trimmed_text("type") == Some("mesh")
+fn is_mesh(shape: &ElementWithDefaults<'_>) -> bool {
+    shape.trimmed_attribute_text("type") == Some("mesh")
 }

@@ -2,10 +2,10 @@
 //! and the controller of the motor (MuJoCo 4.0, "DC motor technical note").
 
 use super::activation::{
-    ActuatorLaw, ActuatorNames, CONTROLS, OTHER_INPUTS, TINY, report_controller_limit,
+    ActuatorLaw, ActuatorNames, CONTROLS, OTHER_INPUTS, TINY, report_unsupported_controller_limit,
     requested_controller_inputs,
 };
-use super::defaults::Element;
+use super::defaults::ElementWithDefaults;
 use super::formula::ActuatorLawExpression;
 use super::record::ActuatorRecord;
 use crate::import::context::Cx;
@@ -14,17 +14,29 @@ use crate::import::imported::Located;
 /// Writes the force of a motor with its states: temperature, deflection of the bristles, current.
 pub(super) fn write_motor_law(
     law: &mut ActuatorLaw,
-    actuator: &Element<'_>,
+    actuator: &ElementWithDefaults<'_>,
     record: &ActuatorRecord<'_>,
     named: &ActuatorNames<'_>,
     cx: &mut Cx<'_>,
 ) -> Option<()> {
     let (dynprm, gain, bias) = (&record.dynprm, &record.gain, &record.bias);
-    let none = actuator.trimmed_text("input") == Some("none");
+    let none = actuator.trimmed_attribute_text("input") == Some("none");
     check_winding_constants(actuator, [gain[0], gain[1]], none, cx)?;
-    report_controller_limit(actuator, "controller", "the `slewmax` of a controller", dynprm[7], cx)?;
+    report_unsupported_controller_limit(
+        actuator,
+        "controller",
+        "the `slewmax` of a controller",
+        dynprm[7],
+        cx,
+    )?;
     if gain[5] > 0.0 {
-        report_controller_limit(actuator, "controller", "the `Imax` of a controller", dynprm[8], cx)?;
+        report_unsupported_controller_limit(
+            actuator,
+            "controller",
+            "the `Imax` of a controller",
+            dynprm[8],
+            cx,
+        )?;
     }
     let [constant, lag] = [gain[1], dynprm[0]];
     let voltage = motor_voltage_from_inputs(law, actuator, gain, none, named, cx)?;
@@ -32,14 +44,15 @@ pub(super) fn write_motor_law(
     let resistance = match heats {
         // Temperature relative to the ambient temperature.
         true => {
-            (law.state_value("temperature", named) * gain[2] + (1.0 + gain[2] * (dynprm[4] - gain[3])))
+            (law.actuator_state_formula("temperature", named) * gain[2]
+                + (1.0 + gain[2] * (dynprm[4] - gain[3])))
                 * gain[0]
         }
         false => law.constant_formula(gain[0]),
     };
-    let driving = voltage - law.length_rate() * constant;
+    let driving = voltage - law.actuator_length_rate_formula() * constant;
     let current = match lag > 0.0 {
-        true => law.state_value("current", named),
+        true => law.actuator_state_formula("current", named),
         false => driving.clone() / resistance.clone(),
     };
     if heats {
@@ -51,13 +64,14 @@ pub(super) fn write_motor_law(
                 cx,
             );
         }
-        let cooling = law.state_value("temperature", named) * (1.0 / dynprm[2]);
+        let cooling = law.actuator_state_formula("temperature", named) * (1.0 / dynprm[2]);
         let rate = (resistance.clone() * current.clone().square() - cooling) * (1.0 / dynprm[3]);
         law.add_actuator_state("temperature", "Temperature above ambient", "K", rate, named);
     }
     law.force = current.clone() * constant;
     if bias[0] != 0.0 {
-        law.force = law.force.clone() + (law.length() * bias[1] + bias[2]).apply_function("sin") * bias[0];
+        law.force = law.force.clone()
+            + (law.actuator_length_formula() * bias[1] + bias[2]).apply_function("sin") * bias[0];
     }
     if dynprm[5] > 0.0 {
         add_bristle_friction(law, [dynprm[5], dynprm[6]], [bias[3], bias[4], bias[5]], named);
@@ -77,7 +91,7 @@ pub(super) fn write_motor_law(
 }
 
 fn check_winding_constants(
-    actuator: &Element<'_>,
+    actuator: &ElementWithDefaults<'_>,
     [resistance, constant]: [f64; 2],
     none: bool,
     cx: &mut Cx<'_>,
@@ -94,19 +108,19 @@ fn check_winding_constants(
 }
 
 fn report_unsupported_attribute<T>(
-    actuator: &Element<'_>,
+    actuator: &ElementWithDefaults<'_>,
     attribute: &str,
     message: &str,
     cx: &mut Cx<'_>,
 ) -> Option<T> {
-    cx.report_error(&actuator.place_of_value(attribute, cx), message, |d| d.add_help(OTHER_INPUTS));
+    cx.report_error(&actuator.place_of_attribute_value(attribute, cx), message, |d| d.add_help(OTHER_INPUTS));
     None
 }
 
 /// Adds the inputs, and returns the voltage. The controller commands a torque and compensates the back-EMF.
 fn motor_voltage_from_inputs(
     law: &mut ActuatorLaw,
-    actuator: &Element<'_>,
+    actuator: &ElementWithDefaults<'_>,
     gain: &[f64; 10],
     none: bool,
     named: &ActuatorNames<'_>,
@@ -128,7 +142,7 @@ fn motor_voltage_from_inputs(
             cx,
         );
     }
-    let mut torque = law.length() * -kp - law.length_rate() * kd;
+    let mut torque = law.actuator_length_formula() * -kp - law.actuator_length_rate_formula() * kd;
     let mut raw = law.constant_formula(0.0);
     let mut error = law.constant_formula(0.0);
     for word in &controls {
@@ -141,7 +155,7 @@ fn motor_voltage_from_inputs(
         let input = law.add_input(if controls.len() == 1 { "" } else { word }, unit, named);
         match *word {
             "pos" => {
-                error = input.clone() - law.length();
+                error = input.clone() - law.actuator_length_formula();
                 torque = torque + input * kp;
             }
             "vel" => torque = torque + input * kd,
@@ -153,10 +167,10 @@ fn motor_voltage_from_inputs(
         return Some(raw);
     }
     if ki > 0.0 {
-        torque = torque + law.state_value("integral", named) * ki;
+        torque = torque + law.actuator_state_formula("integral", named) * ki;
         law.add_actuator_state("integral", "Integral of the error", "rad·s", error, named);
     }
-    let driven = torque * (resistance / constant) + law.length_rate() * constant;
+    let driven = torque * (resistance / constant) + law.actuator_length_rate_formula() * constant;
     let driven = if maximum > 0.0 { driven.clamp_between(-maximum, maximum) } else { driven };
     Some(driven + raw)
 }
@@ -169,7 +183,7 @@ fn add_bristle_friction(
     [coulomb, held, stribeck]: [f64; 3],
     named: &ActuatorNames<'_>,
 ) {
-    let (rate, state) = (law.length_rate(), law.state_value("bristles", named));
+    let (rate, state) = (law.actuator_length_rate_formula(), law.actuator_state_formula("bristles", named));
     let decay = (-(rate.clone() * (1.0 / stribeck.max(TINY))).square()).apply_function("exp");
     let level = decay * (held - coulomb) + coulomb;
     let change = rate.clone() - rate.apply_function("abs") * stiffness / level * state.clone();

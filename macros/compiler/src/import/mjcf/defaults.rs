@@ -2,8 +2,8 @@
 
 use super::super::context::{Cx, format_position, quote_word};
 use super::super::element::{
-    Node, check_attributes, child_elements, element_source_position, read_name_attribute,
-    read_number_attribute, read_numbers_attribute,
+    Node, child_elements, element_source_position, read_name_attribute, read_number_attribute,
+    read_numbers_attribute, report_missing_or_misspelt_attributes,
 };
 use crate::import::imported::Located;
 use crate::syntax::Name;
@@ -28,7 +28,7 @@ pub(super) struct Defaults<'a> {
 /// MJCF element with its defaults: values of the element have priority over those of its class, then of
 /// parent classes.
 #[derive(Clone)]
-pub(super) struct Element<'a> {
+pub(super) struct ElementWithDefaults<'a> {
     /// XML element whose attributes are read.
     pub(super) node: Node<'a>,
     layers: Vec<Node<'a>>,
@@ -56,7 +56,7 @@ impl<'a> Defaults<'a> {
         // An explicit stack replaces recursion, because classes may be nested deeply.
         let mut open = vec![(node, class)];
         while let Some((node, class)) = open.pop() {
-            check_attributes(node, &[], &["class"], cx);
+            report_missing_or_misspelt_attributes(node, &[], &["class"], cx);
             for child in child_elements(node) {
                 if child.tag_name().name() != "default" {
                     self.classes[class].elements.push(child);
@@ -116,10 +116,10 @@ impl<'a> Defaults<'a> {
         tags: &[&str],
         inherited: usize,
         cx: &mut Cx<'_>,
-    ) -> Element<'a> {
+    ) -> ElementWithDefaults<'a> {
         let classes = self.defaults_by_class(node, tags, inherited, cx);
         let defaults = classes.into_iter().rev().flat_map(|class| class.into_iter().rev());
-        Element { node, layers: std::iter::once(node).chain(defaults).collect() }
+        ElementWithDefaults { node, layers: std::iter::once(node).chain(defaults).collect() }
     }
 
     /// Returns the defaults for any of `tags` that apply to an element, one list for each class from the
@@ -143,7 +143,7 @@ impl<'a> Defaults<'a> {
     }
 }
 
-impl<'a> Element<'a> {
+impl<'a> ElementWithDefaults<'a> {
     /// Returns the node with the effective value of `attribute`: the element itself or a default.
     pub(super) fn node_with_attribute(&self, attribute: &str) -> Option<Node<'a>> {
         self.node_with_any_attribute(&[attribute])
@@ -155,7 +155,7 @@ impl<'a> Element<'a> {
     }
 
     /// Returns the text of an attribute without surrounding whitespace.
-    pub(super) fn trimmed_text(&self, attribute: &str) -> Option<&'a str> {
+    pub(super) fn trimmed_attribute_text(&self, attribute: &str) -> Option<&'a str> {
         self.node_with_attribute(attribute).and_then(|node| node.attribute(attribute)).map(str::trim)
     }
 
@@ -228,12 +228,12 @@ impl<'a> Element<'a> {
     }
 
     /// Returns the value of a `true`/`false` attribute; `None` for `auto`.
-    pub(super) fn boolean_choice(&self, attribute: &str, cx: &mut Cx<'_>) -> Option<bool> {
-        boolean_choice(self.node_with_attribute(attribute)?, attribute, cx)
+    pub(super) fn read_boolean_attribute(&self, attribute: &str, cx: &mut Cx<'_>) -> Option<bool> {
+        read_boolean_attribute(self.node_with_attribute(attribute)?, attribute, cx)
     }
 
     /// Returns the source position of an attribute's value, or of the element if the attribute is missing.
-    pub(super) fn place_of_value(&self, attribute: &str, cx: &Cx<'_>) -> crate::diag::Place {
+    pub(super) fn place_of_attribute_value(&self, attribute: &str, cx: &Cx<'_>) -> crate::diag::Place {
         let found = self.node_with_attribute(attribute).and_then(|node| node.attribute_node(attribute));
         found.map_or_else(
             || element_source_position(self.node, cx),
@@ -269,7 +269,7 @@ pub(super) fn numbers_with_defaults<const N: usize>(
 }
 
 /// Returns the value of a `true`/`false` attribute; `None` for `auto` or a missing attribute.
-pub(super) fn boolean_choice(node: Node<'_>, attribute: &str, cx: &mut Cx<'_>) -> Option<bool> {
+pub(super) fn read_boolean_attribute(node: Node<'_>, attribute: &str, cx: &mut Cx<'_>) -> Option<bool> {
     let found = node.attribute_node(attribute)?;
     match found.value().trim() {
         "true" | "enable" => Some(true),

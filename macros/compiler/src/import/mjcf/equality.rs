@@ -1,11 +1,11 @@
 //! `<equality>` → joints that follow others, constraints on coordinates, and loop-closing joints.
 
-use super::defaults::Element;
+use super::defaults::ElementWithDefaults;
 use super::reader::{MjcfReader, origin_of_pose};
 use super::tendon::Tendon;
 use crate::import::context::{Cx, quote_word};
 use crate::import::element::{Node, child_elements, element_source_position, read_name_attribute};
-use crate::import::pose::{FilePose, rotation_of_quaternion};
+use crate::import::pose::{NumericPose, rotation_of_quaternion};
 use crate::import::robot::{plain_joint, unused_name};
 use crate::syntax::{
     BinaryOp, Constraint, ConstraintKind, Endpoint, Expr, ExprKind, GROUND, JointKind, MimicRelation, Name,
@@ -28,7 +28,7 @@ impl<'a> MjcfReader<'a> {
         for node in nodes {
             let element =
                 self.defaults.element_with_defaults(node, &["equality", node.tag_name().name()], 0, cx);
-            if element.boolean_choice("active", cx) == Some(false) {
+            if element.read_boolean_attribute("active", cx) == Some(false) {
                 self.count_skipped_contents("couplings that are not active", 1);
                 continue;
             }
@@ -47,7 +47,7 @@ impl<'a> MjcfReader<'a> {
 
     /// Couples two joints: `y − y₀ = a₀ + a₁ (x − x₀) + …`. The coordinates `x₀` and `y₀` are those in the
     /// configuration of the file. A linear relation becomes a `mimic`, any other a constraint.
-    fn couple_joints(&mut self, element: &Element<'a>, cx: &mut Cx<'_>) {
+    fn couple_joints(&mut self, element: &ElementWithDefaults<'a>, cx: &mut Cx<'_>) {
         let Some(first) = read_name_attribute(element.node, "joint1", cx)
             .filter(|joint| self.check_single_coordinate_joint(joint, "follow", cx))
         else {
@@ -66,9 +66,10 @@ impl<'a> MjcfReader<'a> {
         }
         let polynomial = coupling_coefficients(element, cx);
         let [a0, a1, ..] = polynomial;
-        let reference_of_joint = |joint: &Name| self.references.get(&joint.text).copied().unwrap_or(0.0);
-        let offset = reference_of_joint(&first) + a0
-            - second.as_ref().map_or(0.0, |joint| a1 * reference_of_joint(joint));
+        let reference_coordinate_of_joint =
+            |joint: &Name| self.references.get(&joint.text).copied().unwrap_or(0.0);
+        let offset = reference_coordinate_of_joint(&first) + a0
+            - second.as_ref().map_or(0.0, |joint| a1 * reference_coordinate_of_joint(joint));
         let is_linear = second.is_none() || polynomial[2..] == [0.0; 3];
         let joint = self.robot.joints.iter_mut().find(|joint| joint.name.text == first.text);
         let free = joint.filter(|joint| is_linear && joint.mimic.is_none() && joint.held.is_none());
@@ -86,7 +87,7 @@ impl<'a> MjcfReader<'a> {
 
     /// Couples the lengths of fixed tendons. If a single tendon of two joints is constrained, the second
     /// joint follows the first.
-    fn couple_tendons(&mut self, element: &Element<'a>, tendons: &[Tendon], cx: &mut Cx<'_>) {
+    fn couple_tendons(&mut self, element: &ElementWithDefaults<'a>, tendons: &[Tendon], cx: &mut Cx<'_>) {
         let Some(first) = terms_of_tendon("tendon1", element, tendons, cx) else { return };
         let has_second_tendon = element.node.has_attribute("tendon2");
         let second = if has_second_tendon { terms_of_tendon("tendon2", element, tendons, cx) } else { None };
@@ -95,10 +96,11 @@ impl<'a> MjcfReader<'a> {
         }
         let polynomial = coupling_coefficients(element, cx);
         if let ([(leader, weight), (follower, own)], None) = (first.as_slice(), &second) {
-            let reference_of_joint = |joint: &Name| self.references.get(&joint.text).copied().unwrap_or(0.0);
+            let reference_coordinate_of_joint =
+                |joint: &Name| self.references.get(&joint.text).copied().unwrap_or(0.0);
             let multiplier = -weight / own;
-            let offset =
-                reference_of_joint(follower) + polynomial[0] / own - multiplier * reference_of_joint(leader);
+            let offset = reference_coordinate_of_joint(follower) + polynomial[0] / own
+                - multiplier * reference_coordinate_of_joint(leader);
             let joint = self.robot.joints.iter_mut().find(|joint| joint.name.text == follower.text);
             if let Some(joint) = joint.filter(|joint| joint.mimic.is_none() && joint.held.is_none()) {
                 joint.mimic = Some(MimicRelation { joint: leader.clone(), multiplier, offset });
@@ -112,7 +114,7 @@ impl<'a> MjcfReader<'a> {
     /// with the coefficients of the tendons.
     fn add_polynomial_constraint(
         &mut self,
-        element: &Element<'a>,
+        element: &ElementWithDefaults<'a>,
         first: &[(Name, f64)],
         second: Option<&[(Name, f64)]>,
         polynomial: [f64; 5],
@@ -120,7 +122,7 @@ impl<'a> MjcfReader<'a> {
     ) {
         let at = element_source_position(element.node, cx);
         let number_literal = |x: f64| Expr::number_at(x, &at);
-        let weighted_sum = |terms: &[(Name, f64)]| {
+        let weighted_displacement_sum = |terms: &[(Name, f64)]| {
             let zero: f64 = terms
                 .iter()
                 .map(|(joint, weight)| weight * self.references.get(&joint.text).copied().unwrap_or(0.0))
@@ -136,7 +138,7 @@ impl<'a> MjcfReader<'a> {
         };
         let other = match second {
             Some(second) => {
-                let d = weighted_sum(second);
+                let d = weighted_displacement_sum(second);
                 let highest = polynomial.iter().rposition(|factor| *factor != 0.0).unwrap_or(0);
                 let start = number_literal(polynomial.get(highest).copied().unwrap_or(0.0));
                 polynomial.iter().take(highest).rev().fold(start, |inner, factor| {
@@ -149,7 +151,7 @@ impl<'a> MjcfReader<'a> {
             }
             None => number_literal(polynomial[0]),
         };
-        let value = weighted_sum(first);
+        let value = weighted_displacement_sum(first);
         let kind = element.node.tag_name().name();
         let said = element
             .node
@@ -172,7 +174,7 @@ impl<'a> MjcfReader<'a> {
     }
 
     /// Closes a loop with a ball joint or a weld.
-    fn close_loop(&mut self, element: &Element<'a>, kind: JointKind, cx: &mut Cx<'_>) {
+    fn close_loop(&mut self, element: &ElementWithDefaults<'a>, kind: JointKind, cx: &mut Cx<'_>) {
         let Some([first, second]) = self.ends_of_loop(element, kind, cx) else { return };
         for (body, _) in [&first, &second] {
             if self.mocap.contains(&body.text) {
@@ -208,34 +210,34 @@ impl<'a> MjcfReader<'a> {
     /// Returns the bodies and the poses of the two ends of a loop-closing joint.
     fn ends_of_loop(
         &self,
-        element: &Element<'a>,
+        element: &ElementWithDefaults<'a>,
         kind: JointKind,
         cx: &mut Cx<'_>,
-    ) -> Option<[(Name, FilePose); 2]> {
+    ) -> Option<[(Name, NumericPose); 2]> {
         if element.node.has_attribute("site1") {
-            let mut end = |attribute: &str| {
+            let mut end_at_site = |attribute: &str| {
                 let site = read_name_attribute(element.node, attribute, cx)?;
                 let found = self.find_site(&site, cx)?;
                 Some((Name { text: found.body, place: site.place }, found.pose))
             };
-            return Some([end("site1")?, end("site2")?]);
+            return Some([end_at_site("site1")?, end_at_site("site2")?]);
         }
-        let mut end = |attribute: &str| {
+        let mut end_on_body = |attribute: &str| {
             let zero = Name { text: GROUND.to_string(), place: element_source_position(element.node, cx) };
             if attribute == "body2" && !element.node.has_attribute(attribute) {
-                return Some((zero, FilePose::ZERO));
+                return Some((zero, NumericPose::ZERO));
             }
             self.find_body(read_name_attribute(element.node, attribute, cx)?, cx)
         };
-        let [(first, outer), (second, inner)] = [end("body1")?, end("body2")?];
+        let [(first, outer), (second, inner)] = [end_on_body("body1")?, end_on_body("body2")?];
         // Pose of the first body relative to the second, in the configuration of the file.
         let between = inner.inverse_pose().compose_with(&outer);
         let anchor = element.read_exactly_n_numbers("anchor", cx).map_or([0.0; 3], |anchor| anchor.value);
         if kind == JointKind::Ball {
-            let at = FilePose { at: anchor, ..FilePose::ZERO };
+            let at = NumericPose { at: anchor, ..NumericPose::ZERO };
             return Some([
                 (first, at),
-                (second, FilePose { at: between.compose_with(&at).at, ..FilePose::ZERO }),
+                (second, NumericPose { at: between.compose_with(&at).at, ..NumericPose::ZERO }),
             ]);
         }
         let said = element.read_exactly_n_numbers::<7>("relpose", cx).map(|said| said.value);
@@ -244,17 +246,18 @@ impl<'a> MjcfReader<'a> {
         let (pose, own) = match said.filter(|[_, _, _, quat @ ..]| *quat != [0.0; 4]) {
             Some([x, y, z, quat @ ..]) => {
                 let size = quat.iter().map(|x| x * x).sum::<f64>().sqrt();
-                let pose = FilePose { at: [x, y, z], axes: rotation_of_quaternion(quat.map(|x| x / size)) };
-                (pose, FilePose { at: anchor, ..FilePose::ZERO })
+                let pose =
+                    NumericPose { at: [x, y, z], axes: rotation_of_quaternion(quat.map(|x| x / size)) };
+                (pose, NumericPose { at: anchor, ..NumericPose::ZERO })
             }
-            None => (between.inverse_pose(), FilePose::ZERO),
+            None => (between.inverse_pose(), NumericPose::ZERO),
         };
         Some([(first, pose), (second, own)])
     }
 }
 
 /// Returns the coefficients `polycoef` of a joint coupling. The default is the identity.
-fn coupling_coefficients(element: &Element<'_>, cx: &mut Cx<'_>) -> [f64; 5] {
+fn coupling_coefficients(element: &ElementWithDefaults<'_>, cx: &mut Cx<'_>) -> [f64; 5] {
     let usual = [0.0, 1.0, 0.0, 0.0, 0.0];
     element.numbers_with_defaults("polycoef", usual, cx).map_or(usual, |found| found.value)
 }
@@ -262,7 +265,7 @@ fn coupling_coefficients(element: &Element<'_>, cx: &mut Cx<'_>) -> [f64; 5] {
 /// Returns the joints and weights of the fixed tendon that a coupling names.
 fn terms_of_tendon(
     attribute: &str,
-    element: &Element<'_>,
+    element: &ElementWithDefaults<'_>,
     tendons: &[Tendon],
     cx: &mut Cx<'_>,
 ) -> Option<Vec<(Name, f64)>> {

@@ -1,33 +1,41 @@
 //! Positions and orientations of MJCF elements.
 
-use super::defaults::Element;
+use super::defaults::ElementWithDefaults;
 use super::settings::MjcfSettings;
 use crate::diag::Place;
 use crate::import::context::Cx;
 use crate::import::element::report_likely_degrees;
 use crate::import::imported::Located;
 use crate::import::pose::{
-    FilePose, IDENTITY, Matrix, add, axis_rotation, cross, dot, length, matrix_product, rotation_from_z,
-    rotation_of_quaternion, vector_times_scalar,
+    IDENTITY, Matrix, NumericPose, axis_rotation, cross, dot, matrix_product, rotation_from_z,
+    rotation_of_quaternion, vector_norm, vector_sum, vector_times_scalar,
 };
 
 /// Attributes that specify an orientation. An element may have at most one of them.
 pub(super) const ORIENTATIONS: [&str; 5] = ["quat", "axisangle", "euler", "xyaxes", "zaxis"];
 
 /// Returns the pose of an MJCF element relative to its parent.
-pub(super) fn read_pose(element: &Element<'_>, settings: &MjcfSettings, cx: &mut Cx<'_>) -> FilePose {
+pub(super) fn read_pose(
+    element: &ElementWithDefaults<'_>,
+    settings: &MjcfSettings,
+    cx: &mut Cx<'_>,
+) -> NumericPose {
     let at = element.read_exactly_n_numbers("pos", cx).map_or([0.0; 3], |at| at.value);
-    FilePose { at, axes: read_orientation(element, settings, cx) }
+    NumericPose { at, axes: read_orientation(element, settings, cx) }
 }
 
 /// Returns the orientation of an MJCF element as a rotation matrix.
-pub(super) fn read_orientation(element: &Element<'_>, settings: &MjcfSettings, cx: &mut Cx<'_>) -> Matrix {
+pub(super) fn read_orientation(
+    element: &ElementWithDefaults<'_>,
+    settings: &MjcfSettings,
+    cx: &mut Cx<'_>,
+) -> Matrix {
     let Some(node) = element.node_with_any_attribute(&ORIENTATIONS) else { return IDENTITY };
     let said: Vec<&str> = ORIENTATIONS.into_iter().filter(|name| node.has_attribute(*name)).collect();
     let [one] = said.as_slice() else {
         let message = format!("an orientation is given once, but here are `{}`", said.join("` and `"));
         cx.report_error(
-            &element.place_of_value(said.first().copied().unwrap_or_default(), cx),
+            &element.place_of_attribute_value(said.first().copied().unwrap_or_default(), cx),
             message,
             |d| d,
         );
@@ -38,7 +46,7 @@ pub(super) fn read_orientation(element: &Element<'_>, settings: &MjcfSettings, c
 
 fn read_one_orientation(
     which: &str,
-    element: &Element<'_>,
+    element: &ElementWithDefaults<'_>,
     settings: &MjcfSettings,
     cx: &mut Cx<'_>,
 ) -> Option<Matrix> {
@@ -52,7 +60,7 @@ fn read_one_orientation(
         "axisangle" => {
             let found = element.read_exactly_n_numbers::<4>("axisangle", cx)?;
             let [x, y, z, angle] = found.value;
-            let size = length([x, y, z]);
+            let size = vector_norm([x, y, z]);
             report_zero_length_vector(size, "an axis", &found, cx)?;
             report_angles_likely_in_degrees(&[angle], &found.place, settings, cx);
             Some(axis_rotation(vector_times_scalar([x, y, z], 1.0 / size), settings.angle_in_radians(angle)))
@@ -79,18 +87,18 @@ fn read_one_orientation(
         "xyaxes" => {
             let found = element.read_exactly_n_numbers::<6>("xyaxes", cx)?;
             let [a, b, c, d, e, f] = found.value;
-            let size = length([a, b, c]);
+            let size = vector_norm([a, b, c]);
             report_zero_length_vector(size, "the x axis", &found, cx)?;
             let x = vector_times_scalar([a, b, c], 1.0 / size);
-            let y = add([d, e, f], vector_times_scalar(x, -dot(x, [d, e, f])));
-            let size = length(y);
+            let y = vector_sum([d, e, f], vector_times_scalar(x, -dot(x, [d, e, f])));
+            let size = vector_norm(y);
             report_zero_length_vector(size, "the y axis, orthogonalised against x,", &found, cx)?;
             let y = vector_times_scalar(y, 1.0 / size);
             Some(crate::import::pose::transpose(&[x, y, cross(x, y)]))
         }
         _ => {
             let z = element.read_exactly_n_numbers::<3>("zaxis", cx)?;
-            let size = length(z.value);
+            let size = vector_norm(z.value);
             report_zero_length_vector(size, "the z axis", &z, cx)?;
             Some(rotation_from_z(vector_times_scalar(z.value, 1.0 / size)))
         }

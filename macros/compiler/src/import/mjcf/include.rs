@@ -6,7 +6,7 @@
 
 use crate::diag::Diagnostics;
 use crate::import::context::{Cx, format_position, quote_word};
-use crate::import::element::{Node, check_attributes, read_name_attribute};
+use crate::import::element::{Node, read_name_attribute, report_missing_or_misspelt_attributes};
 use crate::import::whole::{
     ComposedText, LoadedRobotFile, MAX_DEPTH, MAX_FILES, canonical_path, report_include_cycle,
     report_too_many_includes,
@@ -112,7 +112,7 @@ fn expansion_steps(
     };
     let mut steps = Vec::new();
     for node in root.descendants().filter(|node| is_include_element(*node)) {
-        check_attributes(node, &["file"], &[], cx);
+        report_missing_or_misspelt_attributes(node, &["file"], &[], cx);
         let written = read_name_attribute(node, "file", cx)?;
         steps.push(ExpansionStep::Copy { file, from: at, to: node.range().start });
         steps.push(ExpansionStep::Include { by: file, at: written, depth: depth + 1 });

@@ -1,13 +1,15 @@
 //! `<joint>` and `<freejoint>` → joints with one degree of freedom, ball joints and free joints.
 
-use super::defaults::Element;
+use super::defaults::ElementWithDefaults;
 use super::reader::MjcfReader;
 use crate::import::context::{Cx, quote_word};
 use crate::import::element::{Node, element_source_position, read_name_attribute};
 use crate::import::imported::Located;
-use crate::import::pose::{FilePose, Vector, add, length, matrix_times_vector, vector_times_scalar};
+use crate::import::pose::{
+    NumericPose, Vector, matrix_times_vector, vector_norm, vector_sum, vector_times_scalar,
+};
 use crate::import::robot::{FileLimits, unused_name};
-use crate::syntax::{Drive, DriveLaw, DriveTarget, Expr, JointKind, LimitOption, Name};
+use crate::syntax::{Expr, FileForceElement, FileForceLaw, FileForceTarget, JointKind, LimitOption, Name};
 
 /// MJCF's names of the joint types.
 const TYPES: [(&str, JointKind); 4] = [
@@ -43,34 +45,39 @@ impl<'a> MjcfReader<'a> {
     /// body.
     pub(super) fn read_joint(
         &mut self,
-        (node, outer, class): (Node<'a>, &FilePose, usize),
+        (node, outer, class): (Node<'a>, &NumericPose, usize),
         body: &Name,
         cx: &mut Cx<'_>,
     ) -> Option<BodyJoint> {
         let free = node.tag_name().name() == "freejoint";
         let tags: &[&str] = if free { &[] } else { &["joint"] };
         let element = self.defaults.element_with_defaults(node, tags, class, cx);
-        self.joint_of_element((&element, outer), free, body, cx)
+        self.read_joint_element((&element, outer), free, body, cx)
     }
 
-    fn joint_of_element(
+    fn read_joint_element(
         &mut self,
-        (element, outer): (&Element<'a>, &FilePose),
+        (element, outer): (&ElementWithDefaults<'a>, &NumericPose),
         free: bool,
         body: &Name,
         cx: &mut Cx<'_>,
     ) -> Option<BodyJoint> {
         let (word, kind) = if free { ("free", JointKind::Free) } else { read_joint_type(element, cx)? };
         let name = self.joint_name(element.node, word, body, cx);
-        let alone = kind.rotates_about_one_axis().is_some();
-        let zero = |at: &str, cx: &Cx<'_>| Located { value: [0.0; 3], place: element.place_of_value(at, cx) };
-        let mut anchor = element.read_exactly_n_numbers("pos", cx).unwrap_or(zero("pos", cx));
-        anchor.value = add(outer.at, matrix_times_vector(&outer.axes, anchor.value));
-        let mut axis = element.read_exactly_n_numbers("axis", cx).unwrap_or(zero("axis", cx));
+        let alone = kind.single_axis_joint_is_rotational().is_some();
+        let zero_vector_at_attribute = |at: &str, cx: &Cx<'_>| Located {
+            value: [0.0; 3],
+            place: element.place_of_attribute_value(at, cx),
+        };
+        let mut anchor =
+            element.read_exactly_n_numbers("pos", cx).unwrap_or(zero_vector_at_attribute("pos", cx));
+        anchor.value = vector_sum(outer.at, matrix_times_vector(&outer.axes, anchor.value));
+        let mut axis =
+            element.read_exactly_n_numbers("axis", cx).unwrap_or(zero_vector_at_attribute("axis", cx));
         if element.node_with_attribute("axis").is_none() {
             axis.value = [0.0, 0.0, 1.0];
         }
-        let size = length(axis.value);
+        let size = vector_norm(axis.value);
         if alone && size < 1e-14 {
             cx.report_error(&axis.place, "axis of zero length has no direction", |d| d);
             return None;
@@ -129,10 +136,15 @@ impl<'a> MjcfReader<'a> {
         name
     }
 
-    fn read_joint_limits(&self, element: &Element<'a>, turns: bool, cx: &mut Cx<'_>) -> FileLimits {
+    fn read_joint_limits(
+        &self,
+        element: &ElementWithDefaults<'a>,
+        turns: bool,
+        cx: &mut Cx<'_>,
+    ) -> FileLimits {
         let mut limits = FileLimits::default();
         if let Some([low, high]) = self.read_range(element, "limited", "range", cx)
-            && self.settings.has_limits()
+            && self.settings.are_limits_enabled()
         {
             let range_end_in_radians = |end: Located<f64>| Located {
                 value: if turns { self.settings.angle_in_radians(end.value) } else { end.value },
@@ -151,7 +163,7 @@ impl<'a> MjcfReader<'a> {
     /// Returns the lower and upper end of a range attribute, if the range is active.
     pub(super) fn read_range(
         &self,
-        element: &Element<'a>,
+        element: &ElementWithDefaults<'a>,
         limited: &str,
         range: &str,
         cx: &mut Cx<'_>,
@@ -162,7 +174,7 @@ impl<'a> MjcfReader<'a> {
         let said = element
             .node_with_attribute(limited)
             .is_some()
-            .then(|| element.boolean_choice(limited, cx))
+            .then(|| element.read_boolean_attribute(limited, cx))
             .flatten();
         let found = element.read_exactly_n_numbers::<2>(range, cx);
         if found.is_none() && element.node_with_attribute(range).is_some() {
@@ -185,7 +197,7 @@ impl<'a> MjcfReader<'a> {
         }
         let Some(Located { value: [low, high], place }) = found else {
             let message = format!("`{limited}=\"true\"` without `{range}`");
-            cx.report_error(&element.place_of_value(limited, cx), message, |d| d);
+            cx.report_error(&element.place_of_attribute_value(limited, cx), message, |d| d);
             return None;
         };
         if low >= high {
@@ -196,8 +208,13 @@ impl<'a> MjcfReader<'a> {
         Some([low, high].map(|value| Located { value, place: place.clone() }))
     }
 
-    fn report_ignored_limits(&mut self, element: &Element<'a>, name: &Name, cx: &mut Cx<'_>) -> FileLimits {
-        let kind = element.trimmed_text("type").filter(|kind| *kind == "ball").unwrap_or("free");
+    fn report_ignored_limits(
+        &mut self,
+        element: &ElementWithDefaults<'a>,
+        name: &Name,
+        cx: &mut Cx<'_>,
+    ) -> FileLimits {
+        let kind = element.trimmed_attribute_text("type").filter(|kind| *kind == "ball").unwrap_or("free");
         for (limited, range, what) in
             [("limited", "range", "limit"), ("actuatorfrclimited", "actuatorfrcrange", "largest force")]
         {
@@ -208,13 +225,13 @@ impl<'a> MjcfReader<'a> {
         FileLimits::default()
     }
 
-    fn read_armature(&mut self, element: &Element<'a>, joint: &BodyJoint, cx: &mut Cx<'_>) {
+    fn read_armature(&mut self, element: &ElementWithDefaults<'a>, joint: &BodyJoint, cx: &mut Cx<'_>) {
         let Some(armature) = element.nonzero_attribute_number("armature", cx) else { return };
-        if joint.kind.rotates_about_one_axis().is_some() {
+        if joint.kind.single_axis_joint_is_rotational().is_some() {
             if armature.value < 0.0 {
                 cx.report_error(&armature.place, format!("negative armature `{}`", armature.value), |d| d);
             }
-            self.add_drive(joint, DriveLaw::Inerter(armature.value));
+            self.add_drive(joint, FileForceLaw::Inerter(armature.value));
             return;
         }
         let message = format!("`armature` of a `{}` joint is not supported", joint.word);
@@ -223,7 +240,7 @@ impl<'a> MjcfReader<'a> {
         });
     }
 
-    fn refuse_time_constants(&self, element: &Element<'a>, cx: &mut Cx<'_>) {
+    fn refuse_time_constants(&self, element: &ElementWithDefaults<'a>, cx: &mut Cx<'_>) {
         if let Some(pair) =
             element.read_exactly_n_numbers::<2>("springdamper", cx).filter(|pair| pair.value != [0.0; 2])
         {
@@ -234,11 +251,17 @@ impl<'a> MjcfReader<'a> {
         }
     }
 
-    fn read_joint_spring(&mut self, element: &Element<'a>, joint: &BodyJoint, rest: f64, cx: &mut Cx<'_>) {
-        report_spring_yield(element, cx);
-        if joint.kind.rotates_about_one_axis().is_some() {
+    fn read_joint_spring(
+        &mut self,
+        element: &ElementWithDefaults<'a>,
+        joint: &BodyJoint,
+        rest: f64,
+        cx: &mut Cx<'_>,
+    ) {
+        report_unsupported_spring_yield(element, cx);
+        if joint.kind.single_axis_joint_is_rotational().is_some() {
             if let Some(stiffness) = element.polynomial_force_coefficients("stiffness", cx) {
-                self.add_drive(joint, DriveLaw::spring(stiffness.value, rest));
+                self.add_drive(joint, FileForceLaw::polynomial_spring_law(stiffness.value, rest));
             }
         } else if let Some(stiffness) = element.linear_coefficient("stiffness", IGNORE_PASSIVE, cx) {
             let message = format!("`stiffness` of a `{}` joint is not supported", joint.word);
@@ -248,7 +271,7 @@ impl<'a> MjcfReader<'a> {
 
     fn read_damping_and_friction_loss(
         &mut self,
-        element: &Element<'a>,
+        element: &ElementWithDefaults<'a>,
         joint: &mut BodyJoint,
         cx: &mut Cx<'_>,
     ) {
@@ -259,11 +282,11 @@ impl<'a> MjcfReader<'a> {
                 continue;
             }
             if is_damping
-                && joint.kind.rotates_about_one_axis().is_some()
+                && joint.kind.single_axis_joint_is_rotational().is_some()
                 && let Some(found) = element.polynomial_force_coefficients(which, cx)
                 && found.value[1..] != [0.0; 2]
             {
-                self.add_drive(joint, DriveLaw::damper(found.value));
+                self.add_drive(joint, FileForceLaw::polynomial_damper_law(found.value));
                 continue;
             }
             let found = match is_damping {
@@ -276,7 +299,7 @@ impl<'a> MjcfReader<'a> {
                 cx.report_error(&found.place, message, |d| d.add_help(IGNORE_PASSIVE));
             }
             let coefficient_expression = || Some(Expr::number_at(found.value, &found.place));
-            match (joint.kind.rotates_about_one_axis(), is_damping) {
+            match (joint.kind.single_axis_joint_is_rotational(), is_damping) {
                 (Some(_), true) => joint.damping = coefficient_expression(),
                 (Some(_), false) => joint.friction = coefficient_expression(),
                 (None, true) => joint.spread = Some(found),
@@ -288,14 +311,14 @@ impl<'a> MjcfReader<'a> {
         }
     }
 
-    fn add_drive(&mut self, joint: &BodyJoint, law: DriveLaw) {
-        let on = DriveTarget::Sum(vec![(joint.name.clone(), 1.0)]);
-        self.robot.drives.push(Drive { name: joint.name.clone(), on, law });
+    fn add_drive(&mut self, joint: &BodyJoint, law: FileForceLaw) {
+        let on = FileForceTarget::Sum(vec![(joint.name.clone(), 1.0)]);
+        self.robot.drives.push(FileForceElement { name: joint.name.clone(), on, law });
     }
 }
 
 /// Reports a nonzero attribute `springyield`, which is not supported.
-pub(super) fn report_spring_yield(element: &Element<'_>, cx: &mut Cx<'_>) {
+pub(super) fn report_unsupported_spring_yield(element: &ElementWithDefaults<'_>, cx: &mut Cx<'_>) {
     if let Some(found) = element.nonzero_attribute_number("springyield", cx) {
         let message = "`springyield` is not supported: a spring that yields has a state of its own";
         cx.report_error(&found.place, message, |d| d.add_help(IGNORE_PASSIVE));
@@ -307,12 +330,12 @@ pub(super) fn is_joint_element(node: Node<'_>) -> bool {
     matches!(node.tag_name().name(), "joint" | "freejoint")
 }
 
-fn read_joint_type(element: &Element<'_>, cx: &mut Cx<'_>) -> Option<(&'static str, JointKind)> {
-    let word = element.trimmed_text("type").unwrap_or("hinge");
+fn read_joint_type(element: &ElementWithDefaults<'_>, cx: &mut Cx<'_>) -> Option<(&'static str, JointKind)> {
+    let word = element.trimmed_attribute_text("type").unwrap_or("hinge");
     let known = TYPES.iter().find(|(known, _)| *known == word);
     if known.is_none() {
         let message = format!("unknown joint type {}", quote_word(word));
-        cx.report_error(&element.place_of_value("type", cx), message, |d| {
+        cx.report_error(&element.place_of_attribute_value("type", cx), message, |d| {
             d.suggest_name(word, TYPES.map(|(word, _)| word))
         });
     }

@@ -1,11 +1,11 @@
 //! Parameters of an actuator → its force, with the states of its activation.
 
 use super::activation::{
-    ActuatorLaw, ActuatorNames, CONTROLS, OTHER_INPUTS, TINY, report_controller_limit,
+    ActuatorLaw, ActuatorNames, CONTROLS, OTHER_INPUTS, TINY, report_unsupported_controller_limit,
     requested_controller_inputs,
 };
 use super::dc_motor;
-use super::defaults::Element;
+use super::defaults::ElementWithDefaults;
 use super::muscle;
 use super::record::{ActuatorRecord, read_actuator_record};
 use crate::import::context::{Cx, quote_word};
@@ -27,7 +27,7 @@ pub(super) enum ActuatorForceLaw {
 /// Reads the force of an actuator with its defaults. `classes` contains the defaults from the outermost class
 /// to the actuator's own. Reports actuators that are not supported, and returns `None` for them.
 pub(super) fn read_actuator_force<'a>(
-    actuator: &Element<'a>,
+    actuator: &ElementWithDefaults<'a>,
     classes: &[Vec<Node<'a>>],
     named: &ActuatorNames<'_>,
     cx: &mut Cx<'_>,
@@ -53,10 +53,14 @@ pub(super) fn read_actuator_force<'a>(
 }
 
 /// Reports types that are not supported, and damping that depends on the inertia.
-fn check_actuator_type(actuator: &Element<'_>, record: &ActuatorRecord<'_>, cx: &mut Cx<'_>) -> bool {
+fn check_actuator_type(
+    actuator: &ElementWithDefaults<'_>,
+    record: &ActuatorRecord<'_>,
+    cx: &mut Cx<'_>,
+) -> bool {
     let mut good = true;
-    let mut refuse = |attribute: &str, message: String, help: &'static str| {
-        cx.report_error(&actuator.place_of_value(attribute, cx), message, |d| d.add_help(help));
+    let mut refuse_attribute = |attribute: &str, message: String, help: &'static str| {
+        cx.report_error(&actuator.place_of_attribute_value(attribute, cx), message, |d| d.add_help(help));
         good = false;
     };
     let unsupported_message =
@@ -71,7 +75,7 @@ fn check_actuator_type(actuator: &Element<'_>, record: &ActuatorRecord<'_>, cx: 
         ("biastype", record.bias_kind, &["none", "affine", "muscle", "dcmotor"][..]),
     ] {
         if !known.contains(&word) {
-            refuse(attribute, unsupported_message(attribute, word), OTHER_INPUTS);
+            refuse_attribute(attribute, unsupported_message(attribute, word), OTHER_INPUTS);
         }
     }
     for (word, three) in [("dcmotor", true), ("pid", false)] {
@@ -83,7 +87,7 @@ fn check_actuator_type(actuator: &Element<'_>, record: &ActuatorRecord<'_>, cx: 
                 [word, "none"].contains(&kinds[1]) && kinds[2] == "affine"
             };
         if kinds.contains(&word) && !matching {
-            refuse(
+            refuse_attribute(
                 "gaintype",
                 format!("`{word}` with other types"),
                 "write the element `<dcmotor>` or `<pid>`",
@@ -94,7 +98,7 @@ fn check_actuator_type(actuator: &Element<'_>, record: &ActuatorRecord<'_>, cx: 
     let [_, b1, b2, ..] = record.bias;
     let servo = record.gain_kind == "fixed" && g0 == -b1;
     if record.bias_kind == "affine" && (servo || record.gain_kind == "pid") && b2 > 0.0 {
-        refuse("dampratio", "`dampratio` is not supported".to_string(), "write `kv`");
+        refuse_attribute("dampratio", "`dampratio` is not supported".to_string(), "write `kv`");
     }
     good
 }
@@ -102,7 +106,7 @@ fn check_actuator_type(actuator: &Element<'_>, record: &ActuatorRecord<'_>, cx: 
 /// Writes the force `gain · w + bias` with an optional state `w` in the place of the input.
 fn write_general_law(
     law: &mut ActuatorLaw,
-    actuator: &Element<'_>,
+    actuator: &ElementWithDefaults<'_>,
     record: &ActuatorRecord<'_>,
     named: &ActuatorNames<'_>,
     cx: &mut Cx<'_>,
@@ -120,7 +124,7 @@ fn write_general_law(
         _ => "any",
     };
     let input = law.add_input("", unit, named);
-    let state = law.state_value("activation", named);
+    let state = law.actuator_state_formula("activation", named);
     let lag = record.dynprm[0].max(TINY);
     let rate = match record.dynamics {
         "integrator" => Some(input.clone()),
@@ -155,7 +159,7 @@ fn write_general_law(
 /// `ż = pos − length`.
 fn write_pid_law(
     law: &mut ActuatorLaw,
-    actuator: &Element<'_>,
+    actuator: &ElementWithDefaults<'_>,
     record: &ActuatorRecord<'_>,
     named: &ActuatorNames<'_>,
     cx: &mut Cx<'_>,
@@ -163,15 +167,15 @@ fn write_pid_law(
     let has_integral_state = record.dynamics == "pid";
     let integral = if has_integral_state { record.gain[0] } else { 0.0 };
     if has_integral_state {
-        report_controller_limit(actuator, "slewmax", "`slewmax`", record.dynprm[1], cx)?;
+        report_unsupported_controller_limit(actuator, "slewmax", "`slewmax`", record.dynprm[1], cx)?;
     }
     if integral > 0.0 {
-        report_controller_limit(actuator, "imax", "`imax`", record.dynprm[0], cx)?;
+        report_unsupported_controller_limit(actuator, "imax", "`imax`", record.dynprm[0], cx)?;
     }
     let controls = requested_controller_inputs(actuator, "pos vel", &CONTROLS[..3], cx)?;
     let [_, proportional, damping, ..] = record.bias;
     let mut force = law.affine_formula(&record.bias);
-    let mut error = -law.length();
+    let mut error = -law.actuator_length_formula();
     let single = controls.len() == 1;
     for word in &controls {
         let rad = named.length == "rad";
@@ -185,7 +189,7 @@ fn write_pid_law(
         let input = law.add_input(if single { "" } else { word }, unit, named);
         match *word {
             "pos" => {
-                error = input.clone() - law.length();
+                error = input.clone() - law.actuator_length_formula();
                 force = force - input * proportional;
             }
             "vel" => force = force - input * damping,
@@ -195,12 +199,12 @@ fn write_pid_law(
     if integral > 0.0 {
         if !controls.contains(&"pos") {
             let message = "`ki` without the input `pos`";
-            cx.report_error(&actuator.place_of_value("ki", cx), message, |d| {
+            cx.report_error(&actuator.place_of_attribute_value("ki", cx), message, |d| {
                 d.add_help("write `input=\"pos vel\"`")
             });
             return None;
         }
-        force = force + law.state_value("integral", named) * integral;
+        force = force + law.actuator_state_formula("integral", named) * integral;
         let unit = if named.length == "rad" { "rad·s" } else { "m·s" };
         law.add_actuator_state("integral", "Integral of the error", unit, error, named);
     }

@@ -6,14 +6,14 @@
 //! along the edge `a` is `−½ ρ b c |v| v − 3π d β v` and the torque about it is `−ρ a (b⁴ + c⁴) |ω| ω / 64 −
 //! π d³ β ω`.
 
-use super::geometry::BodyMass;
+use super::geometry::BodyMassProperties;
 use super::joint::IGNORE_PASSIVE;
 use super::reader::MjcfReader;
 use super::spatial::BodyFrame;
 use crate::diag::Place;
 use crate::import::context::Cx;
 use crate::import::element::element_source_position;
-use crate::import::pose::{FilePose, eigen_decomposition, transpose};
+use crate::import::pose::{NumericPose, eigen_decomposition, transpose};
 use crate::syntax::{BinaryOp, Expr, ExprKind, GROUND, Name};
 use std::f64::consts::PI;
 
@@ -63,8 +63,12 @@ impl MjcfReader<'_> {
     }
 
     /// Records a shape with an individual fluid model, which is not supported.
-    pub(super) fn note_fluid_shape(&mut self, shape: &super::defaults::Element<'_>, cx: &Cx<'_>) {
-        if shape.trimmed_text("fluidshape").is_some_and(|word| word != "none") {
+    pub(super) fn record_unsupported_fluid_shape(
+        &mut self,
+        shape: &super::defaults::ElementWithDefaults<'_>,
+        cx: &Cx<'_>,
+    ) {
+        if shape.trimmed_attribute_text("fluidshape").is_some_and(|word| word != "none") {
             self.shaped.get_or_insert(element_source_position(shape.node, cx));
         }
     }
@@ -74,7 +78,7 @@ impl MjcfReader<'_> {
 /// terms plus a third of that of quadratic terms.
 fn fluid_dissipation_function(
     link: &str,
-    mass: &BodyMass,
+    mass: &BodyMassProperties,
     [density, viscosity]: [f64; 2],
     at: &Place,
 ) -> Expr {
@@ -83,7 +87,7 @@ fn fluid_dissipation_function(
     let edges = moments.map(|moment| ((sum - 2.0 * moment).max(0.0) / mass.mass * 6.0).sqrt());
     let mean = edges.iter().sum::<f64>() / 3.0;
     let name_expression = |text: &str| Expr { kind: ExprKind::Name(text.to_string()), place: at.clone() };
-    let spot = BodyFrame { body: link.to_string(), pose: FilePose { at: mass.com, ..FilePose::ZERO } };
+    let spot = BodyFrame { body: link.to_string(), pose: NumericPose { at: mass.com, ..NumericPose::ZERO } };
     let quotient = |a, b| Expr::binary_operation(BinaryOp::Div, a, b);
     let path = quotient(
         quotient(spot.position_expression_of_spot(at), name_expression(GROUND)),

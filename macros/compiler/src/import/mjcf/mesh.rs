@@ -5,15 +5,15 @@
 //! the centre of mass for the inertia. With `inertia="legacy"`, the default, the volume of each pyramid
 //! counts as positive.
 
-use super::defaults::{Defaults, Element};
-use super::geometry::BodyMass;
+use super::defaults::{Defaults, ElementWithDefaults};
+use super::geometry::BodyMassProperties;
 use super::settings::MjcfSettings;
 use crate::import::context::{Cx, quote_word};
 use crate::import::element::{Node, child_elements, element_source_position, read_name_attribute};
 use crate::import::mesh::{self, Triangle};
 use crate::import::pose::{
-    Matrix, Vector, add, cross, dot, length, matrix_times_vector, rotation_of_quaternion, transpose,
-    vector_times_scalar,
+    Matrix, Vector, cross, dot, matrix_times_vector, rotation_of_quaternion, transpose, vector_norm,
+    vector_sum, vector_times_scalar,
 };
 use crate::syntax::{Mesh, MeshVertices, Name};
 use std::collections::BTreeMap;
@@ -27,9 +27,9 @@ pub(super) struct Meshes<'a> {
     folder: PathBuf,
     /// Whether the folders in names of mesh files are ignored.
     strips: bool,
-    known: BTreeMap<String, Element<'a>>,
+    known: BTreeMap<String, ElementWithDefaults<'a>>,
     /// Mass properties at density 1 of the meshes that were read.
-    read: BTreeMap<String, Option<BodyMass>>,
+    read: BTreeMap<String, Option<BodyMassProperties>>,
     /// Paths of the mesh files that were read.
     pub(super) files: Vec<PathBuf>,
 }
@@ -65,9 +65,9 @@ impl<'a> Meshes<'a> {
     /// Returns the mass properties at density 1 of a mesh shape, in the axes of the mesh file.
     pub(super) fn mass_properties_of_mesh_shape(
         &mut self,
-        shape: &Element<'a>,
+        shape: &ElementWithDefaults<'a>,
         cx: &mut Cx<'_>,
-    ) -> Option<BodyMass> {
+    ) -> Option<BodyMassProperties> {
         let (mesh, element) = self.mesh_of_shape(shape, cx)?;
         if let Some(known) = self.read.get(&mesh) {
             return *known;
@@ -78,7 +78,11 @@ impl<'a> Meshes<'a> {
     }
 
     /// Returns the name of a shape's mesh, and the mesh.
-    fn mesh_of_shape(&self, shape: &Element<'a>, cx: &mut Cx<'_>) -> Option<(String, Element<'a>)> {
+    fn mesh_of_shape(
+        &self,
+        shape: &ElementWithDefaults<'a>,
+        cx: &mut Cx<'_>,
+    ) -> Option<(String, ElementWithDefaults<'a>)> {
         let Some(mesh) = shape.attribute_text_with_span("mesh", cx) else {
             cx.report_error(
                 &element_source_position(shape.node, cx),
@@ -99,7 +103,11 @@ impl<'a> Meshes<'a> {
 
     /// Returns the source of the vertices of a mesh shape, for its convex hull; `None` for a mesh that MuJoCo
     /// generates.
-    pub(super) fn vertices_of_shape(&self, shape: &Element<'a>, cx: &mut Cx<'_>) -> Option<MeshVertices> {
+    pub(super) fn vertex_source_of_mesh_shape(
+        &self,
+        shape: &ElementWithDefaults<'a>,
+        cx: &mut Cx<'_>,
+    ) -> Option<MeshVertices> {
         let (mesh, element) = self.mesh_of_shape(shape, cx)?;
         let (linear, offset) = vertex_transformation(&element, cx);
         let place = element_source_position(element.node, cx);
@@ -114,11 +122,14 @@ impl<'a> Meshes<'a> {
             });
         }
         let place = match element.node_with_attribute("vertex") {
-            Some(_) => element.place_of_value("vertex", cx),
+            Some(_) => element.place_of_attribute_value("vertex", cx),
             None => place,
         };
-        let numbers: Option<Vec<f64>> =
-            element.trimmed_text("vertex")?.split_ascii_whitespace().map(|word| word.parse().ok()).collect();
+        let numbers: Option<Vec<f64>> = element
+            .trimmed_attribute_text("vertex")?
+            .split_ascii_whitespace()
+            .map(|word| word.parse().ok())
+            .collect();
         let Some(numbers) = numbers.filter(|numbers| numbers.len() % 3 == 0) else {
             cx.report_error(&place, "expected three numbers for each vertex", |d| d);
             return None;
@@ -135,24 +146,30 @@ impl<'a> Meshes<'a> {
 
     /// Returns the mesh to draw for a shape, in the axes of the mesh file; `None` for a mesh with reference
     /// axes of its own.
-    pub(super) fn mesh_to_draw(&self, shape: &Element<'a>, cx: &mut Cx<'_>) -> Option<Mesh> {
-        let element = self.known.get(shape.trimmed_text("mesh")?)?;
+    pub(super) fn mesh_to_draw(&self, shape: &ElementWithDefaults<'a>, cx: &mut Cx<'_>) -> Option<Mesh> {
+        let element = self.known.get(shape.trimmed_attribute_text("mesh")?)?;
         if element.node_with_any_attribute(&["refpos", "refquat"]).is_some() {
             return None;
         }
         let scale = element.read_exactly_n_numbers("scale", cx).map_or([1.0; 3], |found| found.value);
-        Some(Mesh { path: element.trimmed_text("file")?.to_string(), scale })
+        Some(Mesh { path: element.trimmed_attribute_text("file")?.to_string(), scale })
     }
 
-    fn mass_properties_of_mesh(&mut self, element: &Element<'a>, cx: &mut Cx<'_>) -> Option<BodyMass> {
-        let exact = match element.trimmed_text("inertia") {
+    fn mass_properties_of_mesh(
+        &mut self,
+        element: &ElementWithDefaults<'a>,
+        cx: &mut Cx<'_>,
+    ) -> Option<BodyMassProperties> {
+        let exact = match element.trimmed_attribute_text("inertia") {
             None | Some("legacy") => false,
             Some("exact") => true,
             Some(other) => {
                 let message = format!("`inertia` {} of a mesh is not supported", quote_word(other));
                 let help =
                     "expected `legacy` or `exact`, or an `<inertial>` in the bodies that have the mesh";
-                cx.report_error(&element.place_of_value("inertia", cx), message, |d| d.add_help(help));
+                cx.report_error(&element.place_of_attribute_value("inertia", cx), message, |d| {
+                    d.add_help(help)
+                });
                 return None;
             }
         };
@@ -178,7 +195,7 @@ impl<'a> Meshes<'a> {
 }
 
 /// Returns the map of vertices by `refpos`, `refquat` and `scale`, in this order: a matrix and an offset.
-fn vertex_transformation(element: &Element<'_>, cx: &mut Cx<'_>) -> (Matrix, Vector) {
+fn vertex_transformation(element: &ElementWithDefaults<'_>, cx: &mut Cx<'_>) -> (Matrix, Vector) {
     let from = element.read_exactly_n_numbers("refpos", cx).map_or([0.0; 3], |found| found.value);
     let factors = element.read_exactly_n_numbers("scale", cx).map_or([1.0; 3], |found| found.value);
     let quat =
@@ -190,10 +207,10 @@ fn vertex_transformation(element: &Element<'_>, cx: &mut Cx<'_>) -> (Matrix, Vec
 }
 
 /// Transforms the vertices of a mesh by its `refpos`, `refquat` and `scale`.
-fn transform_triangles(element: &Element<'_>, triangles: &mut [Triangle], cx: &mut Cx<'_>) {
+fn transform_triangles(element: &ElementWithDefaults<'_>, triangles: &mut [Triangle], cx: &mut Cx<'_>) {
     let (linear, offset) = vertex_transformation(element, cx);
     for corner in triangles.iter_mut().flatten() {
-        *corner = add(matrix_times_vector(&linear, *corner), offset);
+        *corner = vector_sum(matrix_times_vector(&linear, *corner), offset);
     }
     // A reflection reverses the orientation of the triangles.
     if dot(linear[0], cross(linear[1], linear[2])) < 0.0 {
@@ -202,15 +219,16 @@ fn transform_triangles(element: &Element<'_>, triangles: &mut [Triangle], cx: &m
 }
 
 /// Returns the mass properties at density 1 of a triangulated solid; `None` if its volume is zero.
-fn triangulated_solid_mass_properties(triangles: &[Triangle], exact: bool) -> Option<BodyMass> {
+fn triangulated_solid_mass_properties(triangles: &[Triangle], exact: bool) -> Option<BodyMassProperties> {
     let signed_or_absolute_volume = |volume: f64| if exact { volume } else { volume.abs() };
     let (mut area, mut middle) = (0.0, [0.0; 3]);
     for [a, b, c] in triangles {
-        let one =
-            length(cross(add(*b, vector_times_scalar(*a, -1.0)), add(*c, vector_times_scalar(*a, -1.0))))
-                / 2.0;
+        let one = vector_norm(cross(
+            vector_sum(*b, vector_times_scalar(*a, -1.0)),
+            vector_sum(*c, vector_times_scalar(*a, -1.0)),
+        )) / 2.0;
         area += one;
-        middle = add(middle, vector_times_scalar(add(add(*a, *b), *c), one / 3.0));
+        middle = vector_sum(middle, vector_times_scalar(vector_sum(vector_sum(*a, *b), *c), one / 3.0));
     }
     if area < NOTHING || !area.is_finite() {
         return None;
@@ -218,22 +236,22 @@ fn triangulated_solid_mass_properties(triangles: &[Triangle], exact: bool) -> Op
     let middle = vector_times_scalar(middle, 1.0 / area);
     let (mut volume, mut com) = (0.0, [0.0; 3]);
     for triangle in triangles {
-        let [a, b, c] = triangle.map(|corner| add(corner, vector_times_scalar(middle, -1.0)));
+        let [a, b, c] = triangle.map(|corner| vector_sum(corner, vector_times_scalar(middle, -1.0)));
         let one = signed_or_absolute_volume(dot(a, cross(b, c)) / 6.0);
         volume += one;
-        com = add(com, vector_times_scalar(add(add(a, b), c), one / 4.0));
+        com = vector_sum(com, vector_times_scalar(vector_sum(vector_sum(a, b), c), one / 4.0));
     }
     if volume < NOTHING || !volume.is_finite() {
         return None;
     }
-    let com = add(middle, vector_times_scalar(com, 1.0 / volume));
+    let com = vector_sum(middle, vector_times_scalar(com, 1.0 / volume));
     let (mut mass, mut products) = (0.0, [[0.0; 3]; 3]);
     for triangle in triangles {
-        let corners = triangle.map(|corner| add(corner, vector_times_scalar(com, -1.0)));
+        let corners = triangle.map(|corner| vector_sum(corner, vector_times_scalar(com, -1.0)));
         let [a, b, c] = corners;
         let one = signed_or_absolute_volume(dot(a, cross(b, c)) / 6.0);
         mass += one;
-        let sum = add(add(a, b), c);
+        let sum = vector_sum(vector_sum(a, b), c);
         for (i, row) in products.iter_mut().enumerate() {
             for (j, entry) in row.iter_mut().enumerate() {
                 // ∫ xᵢ xⱼ over a pyramid whose apex is the origin.
@@ -246,13 +264,13 @@ fn triangulated_solid_mass_properties(triangles: &[Triangle], exact: bool) -> Op
     let inertia = std::array::from_fn(|i| {
         std::array::from_fn(|j| if i == j { trace - products[i][i] } else { -products[i][j] })
     });
-    Some(BodyMass { mass, com, inertia })
+    Some(BodyMassProperties { mass, com, inertia })
 }
 
-impl BodyMass {
+impl BodyMassProperties {
     /// Scales the mass properties to another total mass.
-    pub(super) fn scaled_to_mass(&self, mass: f64) -> BodyMass {
-        BodyMass {
+    pub(super) fn scaled_to_mass(&self, mass: f64) -> BodyMassProperties {
+        BodyMassProperties {
             mass,
             com: self.com,
             inertia: self.inertia.map(|row| vector_times_scalar(row, mass / self.mass)),
@@ -284,7 +302,7 @@ mod tests {
     const BOX: &str = "v 1 1 1\nv 3 1 1\nv 3 5 1\nv 1 5 1\nv 1 1 7\nv 3 1 7\nv 3 5 7\nv 1 5 7\n\
         f 4 3 2 1\nf 5/1 6/2 7/3 8/4\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf -8 -4 -1 -5\n";
 
-    fn check_box_mass(found: &BodyMass, at: f64) {
+    fn check_box_mass_properties(found: &BodyMassProperties, at: f64) {
         assert!((found.mass - 48.0).abs() < 1e-12);
         let expected: Vector = [2.0 + at, 3.0, 4.0];
         assert!((0..3).all(|k| (found.com[k] - expected[k]).abs() < 1e-12), "{:?}", found.com);
@@ -301,7 +319,13 @@ mod tests {
     fn triangulated_box_has_the_inertia_of_a_box() {
         let triangles = mesh::read_obj(BOX.as_bytes()).expect("a mesh");
         assert_eq!(triangles.len(), 12);
-        check_box_mass(&triangulated_solid_mass_properties(&triangles, true).expect("a solid"), 0.0);
-        check_box_mass(&triangulated_solid_mass_properties(&triangles, false).expect("a solid"), 0.0);
+        check_box_mass_properties(
+            &triangulated_solid_mass_properties(&triangles, true).expect("a solid"),
+            0.0,
+        );
+        check_box_mass_properties(
+            &triangulated_solid_mass_properties(&triangles, false).expect("a solid"),
+            0.0,
+        );
     }
 }

@@ -9,7 +9,9 @@ use super::whole::import_composed_text;
 use crate::diag::Diagnostics;
 use crate::import::imported::ImportedMechanism;
 use crate::import::robot::{self, JointOrder};
-use crate::syntax::{ContactOption, DriveLaw, DriveTarget, Expr, FileFormat, FileOptions, GROUND, JointKind};
+use crate::syntax::{
+    ContactOption, Expr, FileForceLaw, FileForceTarget, FileFormat, FileOptions, GROUND, JointKind,
+};
 use defaults::Defaults;
 use mesh::Meshes;
 use reader::MjcfReader;
@@ -88,7 +90,7 @@ fn read_mjcf_root(
     reader.read_world(root, cx)?;
     reader.scale_masses();
     reader.add_fluid_drag(cx);
-    robot::check_names(&reader.robot, options.format, cx);
+    robot::check_unique_names(&reader.robot, options.format, cx);
     reader.add_contacts(root, cx);
     let tendons = reader.read_tendons(root, cx);
     reader.read_equalities(root, &tendons, cx);
@@ -101,11 +103,11 @@ fn read_mjcf_root(
     let gravity = &reader.settings.gravity;
     reader.robot.gravity = Some(Expr::vector_at(gravity.value, &gravity.place));
     reader.robot.left_out = ignored_contents(&reader);
-    finish_import(reader, options, cx)
+    assemble_imported_mechanism(reader, options, cx)
 }
 
 /// Assembles the imported mechanism from the contents that the reader collected.
-fn finish_import(
+fn assemble_imported_mechanism(
     reader: MjcfReader<'_>,
     options: &FileOptions,
     cx: &mut Cx<'_>,
@@ -182,19 +184,24 @@ fn report_infinite_values(robot: &robot::Robot, cx: &mut Cx<'_>) {
     }
     for drive in &robot.drives {
         let law = match drive.law {
-            DriveLaw::Spring { stiffness, free } => stiffness.is_finite() && free.is_finite(),
-            DriveLaw::Slack { stiffness, range } => stiffness.into_iter().chain(range).all(f64::is_finite),
-            DriveLaw::PolynomialDamper(damping) => damping.into_iter().all(f64::is_finite),
-            DriveLaw::Expression { ref force, .. } => has_finite_literals(force),
-            DriveLaw::Damper(x) | DriveLaw::Friction(x) | DriveLaw::Inerter(x) | DriveLaw::Push(x) => {
-                x.is_finite()
+            FileForceLaw::Spring { stiffness, free } => stiffness.is_finite() && free.is_finite(),
+            FileForceLaw::Slack { stiffness, range } => {
+                stiffness.into_iter().chain(range).all(f64::is_finite)
             }
-            DriveLaw::Input(_) => true,
+            FileForceLaw::PolynomialDamper(damping) => damping.into_iter().all(f64::is_finite),
+            FileForceLaw::Expression { ref force, .. } => has_finite_literals(force),
+            FileForceLaw::Damper(x)
+            | FileForceLaw::Friction(x)
+            | FileForceLaw::Inerter(x)
+            | FileForceLaw::Push(x) => x.is_finite(),
+            FileForceLaw::Input(_) => true,
         };
         let on = match &drive.on {
-            DriveTarget::Sum(terms) => terms.iter().all(|(_, weight)| weight.is_finite()),
-            DriveTarget::Length(e) => has_finite_literals(e),
-            DriveTarget::Wrench(wrench) => wrench.force.into_iter().chain(wrench.torque).all(f64::is_finite),
+            FileForceTarget::Sum(terms) => terms.iter().all(|(_, weight)| weight.is_finite()),
+            FileForceTarget::Length(e) => has_finite_literals(e),
+            FileForceTarget::Wrench(wrench) => {
+                wrench.force.into_iter().chain(wrench.torque).all(f64::is_finite)
+            }
         };
         if !law || !on {
             let message = format!(

@@ -2,7 +2,7 @@
 //! "Muscles").
 
 use super::activation::{ActuatorLaw, OTHER_INPUTS, TINY};
-use super::defaults::Element;
+use super::defaults::ElementWithDefaults;
 use super::formula::ActuatorLawExpression;
 use super::record::ActuatorRecord;
 use crate::import::context::Cx;
@@ -20,7 +20,7 @@ pub(super) struct Muscle {
 impl Muscle {
     /// Reads the parameters. Reports those that MuJoCo computes from the inertia or by a simulation.
     pub(super) fn read_muscle(
-        actuator: &Element<'_>,
+        actuator: &ElementWithDefaults<'_>,
         record: &ActuatorRecord<'_>,
         cx: &mut Cx<'_>,
     ) -> Option<Muscle> {
@@ -73,38 +73,39 @@ impl Muscle {
     }
 
     /// Returns the muscle length in units of its reference length, as an expression.
-    fn length(&self, prm: &[f64; 9], law: &ActuatorLaw) -> ActuatorLawExpression {
+    fn normalized_muscle_length(&self, prm: &[f64; 9], law: &ActuatorLaw) -> ActuatorLawExpression {
         let unit = self.reference_length(prm);
-        law.length() * (1.0 / unit) + (prm[0] - self.lengths[0] / unit)
+        law.actuator_length_formula() * (1.0 / unit) + (prm[0] - self.lengths[0] / unit)
     }
 
     /// Returns the muscle force at full activation, which is negative.
     pub(super) fn active_force(&self, law: &ActuatorLaw) -> ActuatorLawExpression {
         let [_, _, force, _, lmin, lmax, vmax, _, fvmax] = self.gain;
-        let length = self.length(&self.gain, law);
-        let speed = law.length_rate() * (1.0 / (self.reference_length(&self.gain) * vmax));
+        let length = self.normalized_muscle_length(&self.gain, law);
+        let speed = law.actuator_length_rate_formula() * (1.0 / (self.reference_length(&self.gain) * vmax));
         let (low, high) = (0.5 * (lmin + 1.0), 0.5 * (1.0 + lmax));
         let half_squared_distance =
             |from: f64, width: f64| ((length.clone() + -from) * (1.0 / width)).square() * 0.5;
         let length_force_parabola = |from: f64, width: f64| -half_squared_distance(from, width) + 1.0;
-        let zero = || law.constant_formula(0.0);
-        let beyond = length.clone().piecewise_choice(lmax, half_squared_distance(lmax, lmax - high), zero());
+        let zero_formula = || law.constant_formula(0.0);
+        let beyond =
+            length.clone().piecewise_choice(lmax, half_squared_distance(lmax, lmax - high), zero_formula());
         let falling = length.clone().piecewise_choice(high, length_force_parabola(1.0, high - 1.0), beyond);
         let rising = length.clone().piecewise_choice(1.0, length_force_parabola(1.0, 1.0 - low), falling);
         let inside = length.clone().piecewise_choice(low, half_squared_distance(lmin, low - lmin), rising);
-        let by_length = length.piecewise_choice(lmin, zero(), inside);
+        let by_length = length.piecewise_choice(lmin, zero_formula(), inside);
         let eccentric = fvmax - 1.0;
         let lengthening = -(speed.clone() + -eccentric).square() * (1.0 / eccentric) + fvmax;
         let slow = speed.clone().piecewise_choice(eccentric, lengthening, law.constant_formula(fvmax));
         let shortening = speed.clone().piecewise_choice(0.0, (speed.clone() + 1.0).square(), slow);
-        let by_speed = speed.piecewise_choice(-1.0, zero(), shortening);
+        let by_speed = speed.piecewise_choice(-1.0, zero_formula(), shortening);
         by_length * by_speed * -force
     }
 
     /// Returns the passive muscle force, which is negative.
     pub(super) fn passive_force(&self, law: &ActuatorLaw) -> ActuatorLawExpression {
         let [_, _, force, _, _, lmax, _, fpmax, _] = self.bias;
-        let length = self.length(&self.bias, law);
+        let length = self.normalized_muscle_length(&self.bias, law);
         let border = 0.5 * (1.0 + lmax);
         let scale = 1.0 / (border - 1.0);
         let linear = (length.clone() + -border) * scale + 0.5;
@@ -116,13 +117,13 @@ impl Muscle {
 
 /// Reports an attribute of a muscle that is not supported.
 fn report_unsupported_muscle_attribute<T>(
-    actuator: &Element<'_>,
+    actuator: &ElementWithDefaults<'_>,
     attribute: &str,
     message: &str,
     help: &'static str,
     cx: &mut Cx<'_>,
 ) -> Option<T> {
-    cx.report_error(&actuator.place_of_value(attribute, cx), message, |d| {
+    cx.report_error(&actuator.place_of_attribute_value(attribute, cx), message, |d| {
         d.add_help(help).add_help(OTHER_INPUTS)
     });
     None

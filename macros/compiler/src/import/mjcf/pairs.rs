@@ -2,14 +2,14 @@
 
 use super::body::WORLD;
 use super::reader::MjcfReader;
-use super::touch::{ContactForm, friction_of_dimension, read_contact_dimension};
+use super::touch::{ContactGeometry, friction_of_dimension, read_contact_dimension};
 use crate::diag::Place;
 use crate::import::contact_limit::list_first_names;
 use crate::import::context::{Cx, quote_word};
 use crate::import::element::{
-    Node, check_attributes, child_elements, element_source_position, read_name_attribute,
+    Node, child_elements, element_source_position, read_name_attribute, report_missing_or_misspelt_attributes,
 };
-use crate::import::pose::{FilePose, add, length, vector_times_scalar};
+use crate::import::pose::{NumericPose, vector_norm, vector_sum, vector_times_scalar};
 use crate::import::robot::unused_name;
 use crate::syntax::contact::MAX_CONTACT_POINTS;
 use crate::syntax::{ContactOption, FileContact, FileContactKind, GROUND, JointKind, Name};
@@ -50,7 +50,7 @@ struct ContactCandidate {
 
 impl<'a> MjcfReader<'a> {
     /// Collects the names of the shapes for which `<pair>` elements declare contacts.
-    pub(super) fn collect_paired_shapes(&mut self, root: Node<'a>) {
+    pub(super) fn collect_paired_shape_names(&mut self, root: Node<'a>) {
         let pairs = contact_elements(root, "pair");
         let names = pairs.flat_map(|pair| ["geom1", "geom2"].map(|end| pair.attribute(end)));
         self.paired_shapes = names.flatten().map(|name| name.trim().to_string()).collect();
@@ -62,7 +62,7 @@ impl<'a> MjcfReader<'a> {
         if self.options.contacts == ContactOption::Ignore {
             return;
         }
-        if !self.settings.has_contacts() {
+        if !self.settings.are_contacts_enabled() {
             self.left_out.push("contacts, which the file disables".to_string());
             return;
         }
@@ -182,11 +182,11 @@ impl<'a> MjcfReader<'a> {
                 link => link,
             };
             let numbered = match shape.form {
-                ContactForm::Plane(_) => {
+                ContactGeometry::Plane(_) => {
                     planes += 1;
                     format!("plane{planes}")
                 }
-                ContactForm::Solid { number, .. } => format!("{link}_geom{number}"),
+                ContactGeometry::Solid { number, .. } => format!("{link}_geom{number}"),
             };
             let on_planes = shape.name.clone().unwrap_or(numbered);
             let is_alone = self.contact_shapes.iter().filter(|other| other.link == shape.link).count() == 1;
@@ -209,9 +209,9 @@ impl<'a> MjcfReader<'a> {
         let mut pairs: Vec<ContactPair> = Vec::new();
         let mut unknown_surfaces = Vec::new();
         for node in contact_elements(root, "pair") {
-            check_attributes(node, &["geom1", "geom2"], &[], cx);
+            report_missing_or_misspelt_attributes(node, &["geom1", "geom2"], &[], cx);
             let element = self.defaults.element_with_defaults(node, &["pair"], 0, cx);
-            let mut end = |attribute: &str| {
+            let mut read_known_shape_name = |attribute: &str| {
                 let name = read_name_attribute(node, attribute, cx)?;
                 if !self.named_shapes.contains_key(&name.text) {
                     let known = self.named_shapes.keys().map(String::as_str);
@@ -221,7 +221,11 @@ impl<'a> MjcfReader<'a> {
                 }
                 Some(name)
             };
-            let (Some(first), Some(second)) = (end("geom1"), end("geom2")) else { continue };
+            let (Some(first), Some(second)) =
+                (read_known_shape_name("geom1"), read_known_shape_name("geom2"))
+            else {
+                continue;
+            };
             let friction = read_pair_friction(&element, cx);
             if let Some(found) = element.nonzero_attribute_number("adhesion", cx) {
                 cx.report_error(&found.place, "`adhesion` of a contact is not supported", |d| {
@@ -231,14 +235,14 @@ impl<'a> MjcfReader<'a> {
             if element.nonzero_attribute_number("margin", cx).is_some() {
                 self.count_skipped_contents("margins of contacts", 1);
             }
-            let shape = |name: &Name| {
+            let shape_index_of_name = |name: &Name| {
                 self.contact_shapes.iter().position(|shape| shape.name.as_deref() == Some(name.text.as_str()))
             };
-            let (Some(a), Some(b)) = (shape(&first), shape(&second)) else {
+            let (Some(a), Some(b)) = (shape_index_of_name(&first), shape_index_of_name(&second)) else {
                 unknown_surfaces.push(format!("{} with {}", first.text, second.text));
                 continue;
             };
-            let shapes = self.ordered_shapes([a, b], groups);
+            let shapes = self.shapes_in_contact_order([a, b], groups);
             let place = element_source_position(node, cx);
             if pairs.iter().any(|known| known.shapes == shapes) {
                 let message = format!(
@@ -260,24 +264,25 @@ impl<'a> MjcfReader<'a> {
 
     /// Returns the indices of two shapes in the order of a contact: shapes of moving bodies before fixed
     /// shapes, and these before planes.
-    fn ordered_shapes(&self, [a, b]: [usize; 2], groups: &LinkGroups) -> [usize; 2] {
-        let rank = |k: usize| {
+    fn shapes_in_contact_order(&self, [a, b]: [usize; 2], groups: &LinkGroups) -> [usize; 2] {
+        let rank_in_contact_order = |k: usize| {
             let shape = &self.contact_shapes[k];
             (shape.form.is_plane(), groups.is_fixed[shape.link], k)
         };
-        if rank(a) <= rank(b) { [a, b] } else { [b, a] }
+        if rank_in_contact_order(a) <= rank_in_contact_order(b) { [a, b] } else { [b, a] }
     }
 
     /// Reads the `<exclude>` elements: pairs of links whose shapes do not collide.
     fn read_excluded_bodies(&self, root: Node<'a>, cx: &mut Cx<'_>) -> BTreeSet<[usize; 2]> {
         let mut excluded = BTreeSet::new();
         for node in contact_elements(root, "exclude") {
-            check_attributes(node, &["body1", "body2"], &["name"], cx);
-            let mut end = |attribute: &str| {
+            report_missing_or_misspelt_attributes(node, &["body1", "body2"], &["name"], cx);
+            let mut excluded_link_index = |attribute: &str| {
                 let (body, _) = self.find_body(read_name_attribute(node, attribute, cx)?, cx)?;
                 self.robot.links.iter().position(|link| link.name.text == body.text)
             };
-            if let (Some(first), Some(second)) = (end("body1"), end("body2")) {
+            if let (Some(first), Some(second)) = (excluded_link_index("body1"), excluded_link_index("body2"))
+            {
                 excluded.extend([[first, second], [second, first]]);
             }
         }
@@ -293,8 +298,8 @@ impl<'a> MjcfReader<'a> {
         });
         let candidates = moving.map(|ContactPair { shapes, name, friction, place }| {
             let kind = match self.contact_shapes[shapes[1]].form {
-                ContactForm::Plane(_) => FileContactKind::Plane,
-                ContactForm::Solid { .. } => FileContactKind::Pair,
+                ContactGeometry::Plane(_) => FileContactKind::Plane,
+                ContactGeometry::Solid { .. } => FileContactKind::Pair,
             };
             let of_file = FileContact { kind, distance: self.distance_of_shapes(shapes) };
             ContactCandidate { shapes, name, friction, place, of_file }
@@ -311,10 +316,10 @@ impl<'a> MjcfReader<'a> {
     ) -> Vec<ContactCandidate> {
         let shapes = &self.contact_shapes;
         let declared: BTreeSet<[usize; 2]> = declared.iter().map(|one| one.shapes).collect();
-        let candidate = |pair: [usize; 2]| {
+        let candidate_if_masks_permit = |pair: [usize; 2]| {
             let [first, second] = pair.map(|k| &shapes[k]);
             let collide = first.law.masks_permit_contact(&second.law)
-                && groups.permit_contact(first.link, second.link, self.settings.filter_parent)
+                && groups.may_links_collide(first.link, second.link, self.settings.filter_parent)
                 && !excluded.contains(&[first.link, second.link])
                 && !declared.contains(&pair);
             let is_fixed = [first, second].map(|shape| groups.is_fixed[shape.link]);
@@ -336,25 +341,25 @@ impl<'a> MjcfReader<'a> {
             (0..shapes.len()).partition(|k| shapes[*k].form.is_plane());
         let on_planes = solids.iter().flat_map(|solid| planes.iter().map(|plane| [*solid, *plane]));
         let others = solids.iter().enumerate().flat_map(|(k, first)| {
-            solids[k + 1..].iter().map(|second| self.ordered_shapes([*first, *second], groups))
+            solids[k + 1..].iter().map(|second| self.shapes_in_contact_order([*first, *second], groups))
         });
-        on_planes.chain(others).filter_map(candidate).collect()
+        on_planes.chain(others).filter_map(candidate_if_masks_permit).collect()
     }
 
     /// Returns the distance of the spheres around two shapes in the configuration of the file, m; zero for a
     /// plane.
     fn distance_of_shapes(&self, pair: [usize; 2]) -> f64 {
-        let sphere = |k: usize| match &self.contact_shapes[k].form {
-            ContactForm::Plane(_) => None,
-            ContactForm::Solid { shape, center, .. } => {
+        let bounding_sphere = |k: usize| match &self.contact_shapes[k].form {
+            ContactGeometry::Plane(_) => None,
+            ContactGeometry::Solid { shape, center, .. } => {
                 let link = &self.robot.links[self.contact_shapes[k].link].name.text;
-                let pose = self.poses.get(link).copied().unwrap_or(FilePose::ZERO);
-                let inner = FilePose { at: *center, ..FilePose::ZERO };
+                let pose = self.poses.get(link).copied().unwrap_or(NumericPose::ZERO);
+                let inner = NumericPose { at: *center, ..NumericPose::ZERO };
                 Some((pose.compose_with(&inner).at, shape.bounding_radius()))
             }
         };
-        let [Some((a, first)), Some((b, second))] = pair.map(sphere) else { return 0.0 };
-        length(add(a, vector_times_scalar(b, -1.0))) - first - second
+        let [Some((a, first)), Some((b, second))] = pair.map(bounding_sphere) else { return 0.0 };
+        vector_norm(vector_sum(a, vector_times_scalar(b, -1.0))) - first - second
     }
 }
 
@@ -369,7 +374,7 @@ struct ShapeLabel {
 impl LinkGroups {
     /// Whether two links may collide: they move relative to each other, and neither is the parent of the
     /// other, unless the parent is fixed in the world or `filter_parent` is false.
-    fn permit_contact(&self, a: usize, b: usize, filter_parent: bool) -> bool {
+    fn may_links_collide(&self, a: usize, b: usize, filter_parent: bool) -> bool {
         let [first, second] = [self.group[a], self.group[b]];
         let is_parent = self.parent[first] == second || self.parent[second] == first;
         first != second
@@ -385,7 +390,7 @@ fn contact_elements<'a>(root: Node<'a>, kind: &'static str) -> impl Iterator<Ite
 }
 
 /// Reads the coefficients of sliding, torsional and rolling friction of a `<pair>`.
-fn read_pair_friction(element: &super::defaults::Element<'_>, cx: &mut Cx<'_>) -> [f64; 3] {
+fn read_pair_friction(element: &super::defaults::ElementWithDefaults<'_>, cx: &mut Cx<'_>) -> [f64; 3] {
     let dimension = read_contact_dimension(element, cx);
     let found = element.numbers_with_defaults("friction", PAIR_FRICTION, cx);
     let [first, second, torsional, around_first, around_second] =

@@ -1,15 +1,15 @@
 //! State of the reader of an MJCF file.
 
 use super::body::WORLD;
-use super::defaults::{Defaults, Element};
-use super::geometry::BodyMass;
+use super::defaults::{Defaults, ElementWithDefaults};
+use super::geometry::BodyMassProperties;
 use super::mesh::Meshes;
 use super::settings::MjcfSettings;
 use super::touch::ContactShape;
 use crate::diag::Place;
 use crate::import::context::{Cx, quote_word};
 use crate::import::imported::Located;
-use crate::import::pose::{FilePose, roll_pitch_yaw, vector_times_scalar};
+use crate::import::pose::{NumericPose, roll_pitch_yaw, vector_times_scalar};
 use crate::import::robot::{FileOrigin, Robot};
 use crate::syntax::{Body, Expr, ExprKind, FileOptions, GROUND, Name};
 use std::collections::{BTreeMap, BTreeSet};
@@ -39,21 +39,21 @@ pub(super) struct MjcfReader<'a> {
     pub(super) left_out: Vec<String>,
     pub(super) counts: BTreeMap<&'static str, usize>,
     /// Pose of each body relative to the world, in the configuration of the file.
-    pub(super) poses: BTreeMap<String, FilePose>,
+    pub(super) poses: BTreeMap<String, NumericPose>,
     /// Body of each site, and pose of the site relative to the body.
-    pub(super) poses_of_sites: BTreeMap<String, (String, FilePose)>,
+    pub(super) poses_of_sites: BTreeMap<String, (String, NumericPose)>,
     /// Named shapes, each with its body and the pose of its surrounding `<frame>` elements relative to the
     /// body.
-    pub(super) named_shapes: BTreeMap<String, (String, Element<'a>, FilePose)>,
+    pub(super) named_shapes: BTreeMap<String, (String, ElementWithDefaults<'a>, NumericPose)>,
     /// Source position of the first shape with an individual fluid model.
     pub(super) shaped: Option<Place>,
     /// Names of mocap bodies, whose poses programs prescribe.
     pub(super) mocap: BTreeSet<String>,
     /// Mass properties of each link of the robot.
-    pub(super) masses: Vec<Option<BodyMass>>,
+    pub(super) masses: Vec<Option<BodyMassProperties>>,
     /// Number of bodies read so far, which is MuJoCo's index of the last one.
     pub(super) bodies: usize,
-    pub(super) sites: Vec<(Name, String, FilePose)>,
+    pub(super) sites: Vec<(Name, String, NumericPose)>,
     /// Shapes that can touch each other, in the order of the file, those of the world first.
     pub(super) contact_shapes: Vec<ContactShape>,
     /// Names of the shapes for which the file declares contacts.
@@ -70,7 +70,7 @@ impl<'a> MjcfReader<'a> {
     ) -> MjcfReader<'a> {
         let honour = options.honour_passive;
         let (passive, friction) =
-            (honour && settings.has_passive_forces(), honour && settings.is_dry_friction_enabled());
+            (honour && settings.are_passive_forces_enabled(), honour && settings.is_dry_friction_enabled());
         let (springs, dampers) = (honour && settings.springs, honour && settings.dampers);
         MjcfReader {
             options,
@@ -108,9 +108,9 @@ impl<'a> MjcfReader<'a> {
 
     /// Returns the link of a body of the file, and its pose relative to the world in the configuration of the
     /// file. Reports an unknown body.
-    pub(super) fn find_body(&self, mut body: Name, cx: &mut Cx<'_>) -> Option<(Name, FilePose)> {
+    pub(super) fn find_body(&self, mut body: Name, cx: &mut Cx<'_>) -> Option<(Name, NumericPose)> {
         if body.text == WORLD {
-            return Some((Name { text: GROUND.to_string(), ..body }, FilePose::ZERO));
+            return Some((Name { text: GROUND.to_string(), ..body }, NumericPose::ZERO));
         }
         if body.text == GROUND {
             // The body `ground` of the file was renamed.
@@ -140,7 +140,7 @@ impl<'a> MjcfReader<'a> {
                 let inertia = mass.inertia.map(|row| vector_times_scalar(row, factor));
                 assign_mass_properties(
                     link,
-                    &BodyMass { mass: mass.mass * factor, inertia, ..*mass },
+                    &BodyMassProperties { mass: mass.mass * factor, inertia, ..*mass },
                     &place,
                 );
             }
@@ -149,7 +149,7 @@ impl<'a> MjcfReader<'a> {
 }
 
 /// Sets the mass properties of a link from numbers.
-pub(super) fn assign_mass_properties(link: &mut Body, mass: &BodyMass, place: &Place) {
+pub(super) fn assign_mass_properties(link: &mut Body, mass: &BodyMassProperties, place: &Place) {
     link.mass = Some(Expr::number_at(mass.mass, place));
     link.com = (mass.com != [0.0; 3]).then(|| Expr::vector_at(mass.com, place));
     let rows: Vec<Expr> = (0..3)
@@ -164,7 +164,7 @@ pub(super) fn assign_mass_properties(link: &mut Body, mass: &BodyMass, place: &P
 }
 
 /// Converts a numeric pose to a [`FileOrigin`] with a source position.
-pub(super) fn origin_of_pose(pose: &FilePose, place: &Place) -> FileOrigin {
+pub(super) fn origin_of_pose(pose: &NumericPose, place: &Place) -> FileOrigin {
     let value_with_span = |value| Located { value, place: place.clone() };
     FileOrigin {
         xyz: value_with_span(pose.at.map(|x| x + 0.0)),

@@ -5,7 +5,7 @@
 //! those of the nearest class whose record it can interpret: a record last written by the same shortcut, or
 //! by `<general>` with a constant gain. `<general>` modifies the record of its class.
 
-use super::defaults::{Element, numbers_with_defaults};
+use super::defaults::{ElementWithDefaults, numbers_with_defaults};
 use super::winding;
 use crate::import::context::Cx;
 use crate::import::element::{Node, read_number_attribute};
@@ -52,7 +52,7 @@ pub(super) const fn padded_parameters(first: &[f64]) -> [f64; 10] {
 /// Returns the record of an actuator with its defaults. `classes` contains the defaults from the outermost
 /// class to the actuator's own.
 pub(super) fn read_actuator_record<'a>(
-    actuator: &Element<'a>,
+    actuator: &ElementWithDefaults<'a>,
     classes: &[Vec<Node<'a>>],
     cx: &mut Cx<'_>,
 ) -> ActuatorRecord<'a> {
@@ -60,17 +60,17 @@ pub(super) fn read_actuator_record<'a>(
     for class in classes {
         records.extend(records.last().copied());
         for node in class {
-            write_last_record(&mut records, *node, cx);
+            write_attributes_to_last_record(&mut records, *node, cx);
         }
     }
     records.extend(records.last().copied());
-    write_last_record(&mut records, actuator.node, cx);
+    write_attributes_to_last_record(&mut records, actuator.node, cx);
     records.last().copied().unwrap_or(PLAIN)
 }
 
 /// Writes the attributes of an actuator or of its defaults to the last record. The preceding records belong
 /// to the parent classes.
-fn write_last_record<'a>(records: &mut [ActuatorRecord<'a>], node: Node<'a>, cx: &mut Cx<'_>) {
+fn write_attributes_to_last_record<'a>(records: &mut [ActuatorRecord<'a>], node: Node<'a>, cx: &mut Cx<'_>) {
     let kind = node.tag_name().name();
     let is_record_of_kind = |record: &&ActuatorRecord<'a>| {
         record.written == kind || (record.written == "general" && record.gain_kind == "fixed")
@@ -79,7 +79,8 @@ fn write_last_record<'a>(records: &mut [ActuatorRecord<'a>], node: Node<'a>, cx:
     // The parameters of these are not those of `<general>`.
     let own = if usual.written == kind { usual } else { PLAIN };
     let Some(record) = records.last_mut() else { return };
-    let mut said = |attribute: &str| read_number_attribute(node, attribute, cx).map(|found| found.value);
+    let mut attribute_number =
+        |attribute: &str| read_number_attribute(node, attribute, cx).map(|found| found.value);
     let actuator_shortcut_record = |dynamics, gain_kind, gain, bias_kind, bias: [f64; 3]| ActuatorRecord {
         written: kind,
         dynamics,
@@ -96,9 +97,12 @@ fn write_last_record<'a>(records: &mut [ActuatorRecord<'a>], node: Node<'a>, cx:
         }
         "motor" => actuator_shortcut_record("none", "fixed", 1.0, "none", [0.0; 3]),
         "position" | "intvelocity" => {
-            let stiffness = said("kp").unwrap_or(usual.gain[0]);
-            let damping = said("kv").map(|kv| -kv).or_else(|| said("dampratio")).unwrap_or(usual.bias[2]);
-            let lag = said("timeconst").unwrap_or(usual.dynprm[0]);
+            let stiffness = attribute_number("kp").unwrap_or(usual.gain[0]);
+            let damping = attribute_number("kv")
+                .map(|kv| -kv)
+                .or_else(|| attribute_number("dampratio"))
+                .unwrap_or(usual.bias[2]);
+            let lag = attribute_number("timeconst").unwrap_or(usual.dynprm[0]);
             let filtered = match node.has_attribute("timeconst") {
                 true => lag != 0.0,
                 false => usual.dynamics == "filterexact",
@@ -113,18 +117,18 @@ fn write_last_record<'a>(records: &mut [ActuatorRecord<'a>], node: Node<'a>, cx:
             ActuatorRecord { dynprm: padded_parameters(&[lag]), ..written }
         }
         "velocity" => {
-            let gain = said("kv").unwrap_or(usual.gain[0]);
+            let gain = attribute_number("kv").unwrap_or(usual.gain[0]);
             actuator_shortcut_record("none", "fixed", gain, "affine", [0.0, 0.0, -gain])
         }
         "damper" => {
             let mut record = actuator_shortcut_record("none", "affine", 0.0, "none", [0.0; 3]);
-            record.gain[2] = said("kv").map_or(usual.gain[2], |kv| -kv);
+            record.gain[2] = attribute_number("kv").map_or(usual.gain[2], |kv| -kv);
             record
         }
         "cylinder" => {
-            let lag = said("timeconst").unwrap_or(usual.dynprm[0]);
-            let area = said("area").unwrap_or(usual.gain[0]);
-            let area = said("diameter").map_or(area, |diameter| PI / 4.0 * diameter * diameter);
+            let lag = attribute_number("timeconst").unwrap_or(usual.dynprm[0]);
+            let area = attribute_number("area").unwrap_or(usual.gain[0]);
+            let area = attribute_number("diameter").map_or(area, |diameter| PI / 4.0 * diameter * diameter);
             let bias = numbers_with_defaults(node, "bias", [0.0; 3], cx).map(|found| found.value);
             let [b0, b1, b2, ..] = usual.bias;
             let written =
@@ -132,9 +136,13 @@ fn write_last_record<'a>(records: &mut [ActuatorRecord<'a>], node: Node<'a>, cx:
             ActuatorRecord { dynprm: padded_parameters(&[lag]), ..written }
         }
         "muscle" => record_of_muscle(own, node, cx),
-        "adhesion" => {
-            actuator_shortcut_record("none", "fixed", said("gain").unwrap_or(usual.gain[0]), "none", [0.0; 3])
-        }
+        "adhesion" => actuator_shortcut_record(
+            "none",
+            "fixed",
+            attribute_number("gain").unwrap_or(usual.gain[0]),
+            "none",
+            [0.0; 3],
+        ),
         "orientation" => actuator_shortcut_record("none", "so3", 1.0, "affine", [0.0; 3]),
         "dcmotor" => {
             let known = own.gain_kind == "dcmotor";
@@ -149,12 +157,15 @@ fn write_last_record<'a>(records: &mut [ActuatorRecord<'a>], node: Node<'a>, cx:
         }
         "pid" => {
             let known = own.gain_kind == "pid";
-            let stiffness = said("kp").unwrap_or(if known { -own.bias[1] } else { 1.0 });
-            let damping = said("kv").map(|kv| -kv).or_else(|| said("dampratio")).unwrap_or(own.bias[2]);
-            let integral = said("ki").unwrap_or(if known { own.gain[0] } else { 0.0 });
+            let stiffness = attribute_number("kp").unwrap_or(if known { -own.bias[1] } else { 1.0 });
+            let damping = attribute_number("kv")
+                .map(|kv| -kv)
+                .or_else(|| attribute_number("dampratio"))
+                .unwrap_or(own.bias[2]);
+            let integral = attribute_number("ki").unwrap_or(if known { own.gain[0] } else { 0.0 });
             let limits = if known { own.dynprm } else { [0.0; 10] };
             let limits = [("imax", limits[0]), ("slewmax", limits[1])];
-            let [imax, slew] = limits.map(|(attribute, usual)| said(attribute).unwrap_or(usual));
+            let [imax, slew] = limits.map(|(attribute, usual)| attribute_number(attribute).unwrap_or(usual));
             let dynamics = if integral != 0.0 || slew != 0.0 { "pid" } else { "none" };
             let written =
                 actuator_shortcut_record(dynamics, "pid", integral, "affine", [0.0, -stiffness, damping]);
@@ -178,12 +189,13 @@ fn record_of_muscle<'a>(own: ActuatorRecord<'a>, node: Node<'a>, cx: &mut Cx<'_>
         .map_or([gain[0], gain[1]], |found| found.value);
     gain[0] = nonnegative_or_default(range[0], gain[0]);
     gain[1] = nonnegative_or_default(range[1], gain[1]);
-    let mut said = |attribute: &str| read_number_attribute(node, attribute, cx).map(|found| found.value);
+    let mut attribute_number =
+        |attribute: &str| read_number_attribute(node, attribute, cx).map(|found| found.value);
     for (k, attribute) in ["force", "scale", "lmin", "lmax", "vmax", "fpmax", "fvmax"].into_iter().enumerate()
     {
-        gain[k + 2] = nonnegative_or_default(said(attribute).unwrap_or(-1.0), gain[k + 2]);
+        gain[k + 2] = nonnegative_or_default(attribute_number(attribute).unwrap_or(-1.0), gain[k + 2]);
     }
-    let width = said("tausmooth").unwrap_or(width);
+    let width = attribute_number("tausmooth").unwrap_or(width);
     let dynprm = padded_parameters(&[
         nonnegative_or_default(times[0], rise),
         nonnegative_or_default(times[1], fall),

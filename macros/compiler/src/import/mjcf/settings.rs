@@ -1,6 +1,6 @@
 //! `<compiler>` and `<option>`: settings for the interpretation of the file.
 
-use super::defaults::{boolean_choice, numbers_with_defaults};
+use super::defaults::{numbers_with_defaults, read_boolean_attribute};
 use crate::import::context::{Cx, quote_word};
 use crate::import::element::{
     Node, child_elements, element_source_position, read_number_attribute, read_numbers_attribute,
@@ -123,7 +123,7 @@ impl MjcfSettings {
 
     fn read_compiler_settings(&mut self, node: Node<'_>, cx: &mut Cx<'_>) {
         let trimmed_attribute_word = |attribute: &str| node.attribute(attribute).map(str::trim);
-        let mut unknown = |attribute: &str, expected: &str| {
+        let mut report_unknown_value = |attribute: &str, expected: &str| {
             let value = node.attribute_node(attribute);
             let at = value.map_or(node.range().start, |value| value.range_value().start);
             let found = quote_word(node.attribute(attribute).unwrap_or_default());
@@ -133,13 +133,13 @@ impl MjcfSettings {
         match trimmed_attribute_word("angle") {
             Some("radian") => self.degrees = false,
             Some("degree") => self.degrees = true,
-            Some(_) => unknown("angle", "`degree` or `radian`"),
+            Some(_) => report_unknown_value("angle", "`degree` or `radian`"),
             None => {}
         }
         if trimmed_attribute_word("coordinate")
             .is_some_and(|trimmed_attribute_word| trimmed_attribute_word != "local")
         {
-            unknown(
+            report_unknown_value(
                 "coordinate",
                 "`local`: MuJoCo has no other since version 2.3.4; let an older one convert the file",
             );
@@ -152,7 +152,10 @@ impl MjcfSettings {
                 {
                     self.euler = [a, b, c];
                 }
-                _ => unknown("eulerseq", "three letters of `x`, `y`, `z`, capital about fixed axes"),
+                _ => report_unknown_value(
+                    "eulerseq",
+                    "three letters of `x`, `y`, `z`, capital about fixed axes",
+                ),
             }
         }
         if let Some(trimmed_attribute_word) = trimmed_attribute_word("inertiafromgeom") {
@@ -160,23 +163,23 @@ impl MjcfSettings {
                 "auto" => self.source = MassSource::Auto,
                 "true" => self.source = MassSource::Geometry,
                 "false" => self.source = MassSource::Inertial,
-                _ => unknown("inertiafromgeom", "`true`, `false` or `auto`"),
+                _ => report_unknown_value("inertiafromgeom", "`true`, `false` or `auto`"),
             }
         }
-        self.autolimits = boolean_choice(node, "autolimits", cx).unwrap_or(self.autolimits);
-        self.balance = boolean_choice(node, "balanceinertia", cx).unwrap_or(self.balance);
-        self.align_free = boolean_choice(node, "alignfree", cx).unwrap_or(self.align_free);
-        self.strip_paths = boolean_choice(node, "strippath", cx).unwrap_or(self.strip_paths);
+        self.autolimits = read_boolean_attribute(node, "autolimits", cx).unwrap_or(self.autolimits);
+        self.balance = read_boolean_attribute(node, "balanceinertia", cx).unwrap_or(self.balance);
+        self.align_free = read_boolean_attribute(node, "alignfree", cx).unwrap_or(self.align_free);
+        self.strip_paths = read_boolean_attribute(node, "strippath", cx).unwrap_or(self.strip_paths);
         if let Some(groups) = read_numbers_attribute(node, "inertiagrouprange", cx) {
             self.groups = groups.value;
         }
-        let mut set = |attribute: &str, to: &mut f64| {
+        let mut set_from_attribute = |attribute: &str, to: &mut f64| {
             if let Some(found) = read_number_attribute(node, attribute, cx) {
                 *to = found.value;
             }
         };
-        set("boundmass", &mut self.least_mass);
-        set("boundinertia", &mut self.least_inertia);
+        set_from_attribute("boundmass", &mut self.least_mass);
+        set_from_attribute("boundinertia", &mut self.least_inertia);
         self.total_mass = read_number_attribute(node, "settotalmass", cx)
             .map(|mass| mass.value)
             .or(self.total_mass)
@@ -219,13 +222,13 @@ impl MjcfSettings {
             }
         }
         for flag in child_elements(node).filter(|child| child.tag_name().name() == "flag") {
-            self.read_flag(flag, cx);
+            self.read_flag_element(flag, cx);
         }
     }
 
-    fn read_flag(&mut self, flag: Node<'_>, cx: &mut Cx<'_>) {
+    fn read_flag_element(&mut self, flag: Node<'_>, cx: &mut Cx<'_>) {
         let mut set =
-            |attribute: &str, to: &mut bool| *to = boolean_choice(flag, attribute, cx).unwrap_or(*to);
+            |attribute: &str, to: &mut bool| *to = read_boolean_attribute(flag, attribute, cx).unwrap_or(*to);
         // Older versions have one flag for springs and dampers.
         let mut passive = true;
         set("passive", &mut passive);
@@ -245,7 +248,7 @@ impl MjcfSettings {
 
     /// Whether passive forces that are not constraint forces act: those of the fluid, and gravity
     /// compensation.
-    pub(super) fn has_passive_forces(&self) -> bool {
+    pub(super) fn are_passive_forces_enabled(&self) -> bool {
         self.springs || self.dampers
     }
 
@@ -260,12 +263,12 @@ impl MjcfSettings {
     }
 
     /// Whether ranges of joints and tendons act.
-    pub(super) fn has_limits(&self) -> bool {
+    pub(super) fn are_limits_enabled(&self) -> bool {
         self.constraints && self.limits
     }
 
     /// Whether contacts act in the simulation of the file.
-    pub(super) fn has_contacts(&self) -> bool {
+    pub(super) fn are_contacts_enabled(&self) -> bool {
         self.constraints && self.contacts
     }
 

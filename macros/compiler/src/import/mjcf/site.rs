@@ -2,12 +2,12 @@
 //! which receives the reaction.
 
 use super::activation::OTHER_INPUTS;
-use super::defaults::Element;
+use super::defaults::ElementWithDefaults;
 use super::reader::MjcfReader;
 use super::spatial::BodyFrame;
 use crate::import::context::{Cx, quote_word};
 use crate::import::pose::{Vector, matrix_times_vector};
-use crate::syntax::{BinaryOp, DriveTarget, Expr, ExprKind, GROUND, Name, Wrench};
+use crate::syntax::{BinaryOp, Expr, ExprKind, FileForceTarget, GROUND, Name, Wrench};
 
 impl<'a> MjcfReader<'a> {
     /// Returns what an actuator on a site acts on, and whether its force is a torque. Without a reference
@@ -15,10 +15,10 @@ impl<'a> MjcfReader<'a> {
     pub(super) fn site_transmission(
         &self,
         site: &Name,
-        element: &Element<'a>,
+        element: &ElementWithDefaults<'a>,
         servo: bool,
         cx: &mut Cx<'_>,
-    ) -> Option<(DriveTarget, bool)> {
+    ) -> Option<(FileForceTarget, bool)> {
         let spot = self.find_site(site, cx)?;
         let usual = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0];
         let [x, y, z, a, b, c] =
@@ -30,7 +30,7 @@ impl<'a> MjcfReader<'a> {
             let vector_in_body = |vector| matrix_times_vector(&spot.pose.axes, vector);
             let (force, torque) = (vector_in_body(force), vector_in_body(torque));
             let wrench = Wrench { on: spot.position_expression_of_spot(at), force, torque, against: None };
-            return Some((DriveTarget::Wrench(wrench), turns));
+            return Some((FileForceTarget::Wrench(wrench), turns));
         };
         let against = self.find_site(&other, cx)?;
         if !self.is_ancestor_or_same(&against.body, &spot.body) {
@@ -43,7 +43,9 @@ impl<'a> MjcfReader<'a> {
         }
         if servo && torque != [0.0; 3] {
             let message = "a servo on the orientation of a site is not supported";
-            cx.report_error(&element.place_of_value("gear", cx), message, |d| d.add_help(OTHER_INPUTS));
+            cx.report_error(&element.place_of_attribute_value("gear", cx), message, |d| {
+                d.add_help(OTHER_INPUTS)
+            });
             return None;
         }
         let vector_in_body = |vector| matrix_times_vector(&against.pose.axes, vector);
@@ -56,7 +58,7 @@ impl<'a> MjcfReader<'a> {
             );
             let path = Expr::function_call_expression("r", vec![path], at);
             return Some((
-                DriveTarget::Length(Expr::function_call_expression(
+                FileForceTarget::Length(Expr::function_call_expression(
                     "dot",
                     vec![path, against.body_axes_vector_expression(force, at)],
                     at,
@@ -66,7 +68,12 @@ impl<'a> MjcfReader<'a> {
         }
         let against = Some(against.position_expression_of_spot(at));
         Some((
-            DriveTarget::Wrench(Wrench { on: spot.position_expression_of_spot(at), force, torque, against }),
+            FileForceTarget::Wrench(Wrench {
+                on: spot.position_expression_of_spot(at),
+                force,
+                torque,
+                against,
+            }),
             turns,
         ))
     }

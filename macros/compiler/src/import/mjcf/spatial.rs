@@ -5,17 +5,17 @@
 //! the cable has the direction of rotation of the path through that site in the configuration of the file, as
 //! in MuJoCo 4.0.
 
-use super::defaults::Element;
+use super::defaults::ElementWithDefaults;
 use super::geometry::shape_pose_and_dimensions;
 use super::reader::MjcfReader;
 use crate::diag::Place;
 use crate::import::context::{Cx, quote_word};
 use crate::import::element::{
-    Node, check_attributes, child_elements, element_source_position, quoted_tag, read_name_attribute,
-    read_number_attribute,
+    Node, child_elements, element_source_position, quoted_tag, read_name_attribute, read_number_attribute,
+    report_missing_or_misspelt_attributes,
 };
 use crate::import::pose::{
-    FilePose, Vector, add, cross, dot, length, matrix_times_vector, vector_times_scalar,
+    NumericPose, Vector, cross, dot, matrix_times_vector, vector_norm, vector_sum, vector_times_scalar,
 };
 use crate::syntax::{BinaryOp, Expr, ExprKind, Name};
 use std::collections::BTreeMap;
@@ -25,7 +25,7 @@ use std::f64::consts::PI;
 #[derive(Clone)]
 pub(super) struct BodyFrame {
     pub(super) body: String,
-    pub(super) pose: FilePose,
+    pub(super) pose: NumericPose,
 }
 
 /// Path of a tendon around a surface.
@@ -63,36 +63,36 @@ pub(super) struct ErrorTextWithHelp {
 }
 
 /// Path of a spatial tendon: its segments.
-pub(super) struct Path {
+pub(super) struct TendonPath {
     pieces: Vec<PathSegment>,
     place: Place,
 }
 
 /// Poses of bodies relative to the world, by name of the body.
-pub(super) type Poses = BTreeMap<String, FilePose>;
+pub(super) type BodyPoses = BTreeMap<String, NumericPose>;
 
 impl<'a> MjcfReader<'a> {
     /// Reads the path of a tendon. The outer `None` means an error in the file, the inner `Err` an
     /// unsupported path.
-    pub(super) fn read_path(
+    pub(super) fn read_tendon_path(
         &self,
         node: Node<'a>,
         cx: &mut Cx<'_>,
-    ) -> Option<Result<Path, ErrorTextWithHelp>> {
+    ) -> Option<Result<TendonPath, ErrorTextWithHelp>> {
         let (mut pieces, mut last, mut pending, mut share) = (Vec::new(), None::<BodyFrame>, None, 1.0);
         let mut refused = None;
         report_elements_without_length(node, cx)?;
         for child in child_elements(node) {
             match child.tag_name().name() {
                 "site" => {
-                    check_attributes(child, &["site"], &[], cx);
+                    report_missing_or_misspelt_attributes(child, &["site"], &[], cx);
                     let next = self.find_site(&read_name_attribute(child, "site", cx)?, cx)?;
                     if let Some(first) = last.replace(next.clone()) {
                         pieces.push(PathSegment { ends: [first, next], around: pending.take(), share });
                     }
                 }
                 "geom" => {
-                    check_attributes(child, &["geom"], &["sidesite"], cx);
+                    report_missing_or_misspelt_attributes(child, &["geom"], &["sidesite"], cx);
                     if last.is_none() || pending.is_some() {
                         return report_surface_without_end_site(child, cx);
                     }
@@ -102,7 +102,7 @@ impl<'a> MjcfReader<'a> {
                     }
                 }
                 "pulley" => {
-                    check_attributes(child, &["divisor"], &[], cx);
+                    report_missing_or_misspelt_attributes(child, &["divisor"], &[], cx);
                     if pending.is_some() {
                         return report_surface_without_end_site(child, cx);
                     }
@@ -129,7 +129,7 @@ impl<'a> MjcfReader<'a> {
         if pending.is_some() {
             return report_surface_without_end_site(node, cx);
         }
-        let mut path = Path { pieces, place: element_source_position(node, cx) };
+        let mut path = TendonPath { pieces, place: element_source_position(node, cx) };
         for piece in &mut path.pieces {
             refused = refused.or(self.choose_wrapping_side(piece, &path.place));
         }
@@ -162,7 +162,7 @@ impl<'a> MjcfReader<'a> {
             cx.report_error(&said.place, message, |d| d.suggest_name(&said.text, known));
             return None;
         };
-        let kind = shape.trimmed_text("type").unwrap_or("sphere");
+        let kind = shape.trimmed_attribute_text("type").unwrap_or("sphere");
         if !["sphere", "cylinder"].contains(&kind) {
             let message = format!(
                 "a tendon wraps around spheres and cylinders, but {} is neither",
@@ -189,7 +189,7 @@ impl<'a> MjcfReader<'a> {
             ));
         }
         let [x, y, z] = self.position_relative_to(&frame, &spot);
-        if length([x, y, z]) < radius {
+        if vector_norm([x, y, z]) < radius {
             return refusal_at_side_site(format!(
                 "a tendon that runs inside of the cylinder {}",
                 quote_word(&said.text)
@@ -217,17 +217,23 @@ impl<'a> MjcfReader<'a> {
             let message = "a tendon that begins inside of a cylinder in the pose of the file".to_string();
             return Some(ErrorTextWithHelp { place: place.clone(), message });
         }
-        let angle = |[x, y, _]: Vector| libm::atan2(y, x);
+        let polar_angle = |[x, y, _]: Vector| libm::atan2(y, x);
         let angle_within_half_turn = |angle: f64| libm::atan2(libm::sin(angle), libm::cos(angle));
-        let winding = angle_within_half_turn(*side - angle(a)) + angle_within_half_turn(angle(b) - *side);
+        let winding =
+            angle_within_half_turn(*side - polar_angle(a)) + angle_within_half_turn(polar_angle(b) - *side);
         *side = if winding >= 0.0 { 1.0 } else { -1.0 };
         None
     }
 
     /// Records the named shapes of a body, and shapes with an individual fluid model.
-    pub(super) fn record_shapes(&mut self, body: &str, shapes: &[(Element<'a>, FilePose)], cx: &Cx<'_>) {
+    pub(super) fn record_named_shapes(
+        &mut self,
+        body: &str,
+        shapes: &[(ElementWithDefaults<'a>, NumericPose)],
+        cx: &Cx<'_>,
+    ) {
         for (shape, outer) in shapes {
-            self.note_fluid_shape(shape, cx);
+            self.record_unsupported_fluid_shape(shape, cx);
             if let Some(name) = shape.node.attribute("name") {
                 self.named_shapes.insert(name.to_string(), (body.to_string(), shape.clone(), *outer));
             }
@@ -236,7 +242,7 @@ impl<'a> MjcfReader<'a> {
 }
 
 /// Returns the position of a spot relative to a frame for given poses of the bodies.
-fn position_in_frame(poses: &Poses, frame: &BodyFrame, spot: &BodyFrame) -> Vector {
+fn position_in_frame(poses: &BodyPoses, frame: &BodyFrame, spot: &BodyFrame) -> Vector {
     let world_pose =
         |spot: &BodyFrame| poses.get(&spot.body).map_or(spot.pose, |body| body.compose_with(&spot.pose));
     world_pose(frame).inverse_pose().compose_with(&world_pose(spot)).at
@@ -273,10 +279,10 @@ fn report_surface_without_end_site<T>(node: Node<'_>, cx: &mut Cx<'_>) -> Option
     None
 }
 
-impl Path {
+impl TendonPath {
     /// Returns the length of the tendon path for these poses of the bodies.
-    pub(super) fn length(&self, poses: &Poses) -> f64 {
-        self.pieces.iter().map(|piece| piece.share * piece.length(poses)).sum()
+    pub(super) fn path_length(&self, poses: &BodyPoses) -> f64 {
+        self.pieces.iter().map(|piece| piece.share * piece.segment_length(poses)).sum()
     }
 
     /// Returns the expression of the length of a tendon path.
@@ -297,11 +303,13 @@ impl Path {
 }
 
 impl PathSegment {
-    fn length(&self, poses: &Poses) -> f64 {
+    fn segment_length(&self, poses: &BodyPoses) -> f64 {
         let [a, b] = [&self.ends[0], &self.ends[1]];
         match &self.around {
-            None => length(position_in_frame(poses, a, b)),
-            Some(around) => around.length([a, b].map(|end| position_in_frame(poses, &around.frame, end))),
+            None => vector_norm(position_in_frame(poses, a, b)),
+            Some(around) => {
+                around.taut_cable_length([a, b].map(|end| position_in_frame(poses, &around.frame, end)))
+            }
         }
     }
 
@@ -337,12 +345,12 @@ impl PathSegment {
 impl WrappedSurface {
     /// Returns the length of a taut cable between two points in the axes of this frame. The numeric
     /// counterpart of `Scope::cable`.
-    fn length(&self, [a, b]: [Vector; 2]) -> f64 {
+    fn taut_cable_length(&self, [a, b]: [Vector; 2]) -> f64 {
         let planar_components = |[x, y, _]: Vector| [x, y, 0.0];
         let wrapped_path_length = |a: Vector, b: Vector, angle: f64| {
             let tangents = [a, b].map(|p| (dot(p, p) - self.radius * self.radius).max(0.0).sqrt());
             let touched = tangents.iter().fold(angle, |angle, t| angle - libm::atan2(*t, self.radius));
-            let straight = length(add(a, vector_times_scalar(b, -1.0)));
+            let straight = vector_norm(vector_sum(a, vector_times_scalar(b, -1.0)));
             if touched > 0.0 { tangents[0] + tangents[1] + self.radius * touched } else { straight }
         };
         let length_by_turning_direction = |sign: f64| {
@@ -351,7 +359,7 @@ impl WrappedSurface {
             libm::hypot(wrapped_path_length(planar_components(a), planar_components(b), angle), a[2] - b[2])
         };
         match self.way {
-            WrappingKind::Ball => wrapped_path_length(a, b, libm::atan2(length(cross(a, b)), dot(a, b))),
+            WrappingKind::Ball => wrapped_path_length(a, b, libm::atan2(vector_norm(cross(a, b)), dot(a, b))),
             WrappingKind::Turning(sign) => length_by_turning_direction(sign),
             WrappingKind::Shorter => length_by_turning_direction(1.0).min(length_by_turning_direction(-1.0)),
         }

@@ -1,22 +1,22 @@
 //! `<tendon>`: fixed tendons are weighted sums of coordinates, spatial tendons are lengths.
 
-use super::defaults::{Element, numbers_with_defaults};
-use super::joint::{IGNORE_PASSIVE, report_spring_yield};
+use super::defaults::{ElementWithDefaults, numbers_with_defaults};
+use super::joint::{IGNORE_PASSIVE, report_unsupported_spring_yield};
 use super::reader::MjcfReader;
 use super::spatial::ErrorTextWithHelp;
 use crate::import::context::{Cx, quote_word};
 use crate::import::element::{
-    Node, check_attributes, child_elements, element_source_position, quoted_tag, read_name_attribute,
-    read_number_attribute,
+    Node, child_elements, element_source_position, quoted_tag, read_name_attribute, read_number_attribute,
+    report_missing_or_misspelt_attributes,
 };
-use crate::import::robot::has_coordinate;
-use crate::syntax::{Drive, DriveLaw, DriveTarget, Name};
+use crate::import::robot::has_single_coordinate;
+use crate::syntax::{FileForceElement, FileForceLaw, FileForceTarget, Name};
 use std::collections::BTreeSet;
 
 /// Tendon of an MJCF file. An unsupported spatial tendon is an error only if something acts on it.
 pub(super) struct Tendon {
     pub(super) name: Name,
-    path: Result<DriveTarget, ErrorTextWithHelp>,
+    path: Result<FileForceTarget, ErrorTextWithHelp>,
 }
 
 impl Tendon {
@@ -39,7 +39,7 @@ impl Tendon {
         cx: &mut Cx<'_>,
     ) -> Option<Vec<(Name, f64)>> {
         match &Tendon::find_tendon(name, tendons, cx)?.path {
-            Ok(DriveTarget::Sum(terms)) => Some(terms.clone()),
+            Ok(FileForceTarget::Sum(terms)) => Some(terms.clone()),
             _ => {
                 let message = format!("tendon {} is spatial and cannot be coupled", quote_word(&name.text));
                 cx.report_error(&name.place, message, |d| d.add_help(help));
@@ -54,17 +54,17 @@ impl Tendon {
         tendons: &[Tendon],
         help: &'static str,
         cx: &mut Cx<'_>,
-    ) -> Option<DriveTarget> {
+    ) -> Option<FileForceTarget> {
         target_or_reported_error(&Tendon::find_tendon(name, tendons, cx)?.path, help, cx).cloned()
     }
 }
 
 /// Returns the coordinate or length that forces on a tendon act on, or reports an unsupported path.
 fn target_or_reported_error<'t>(
-    path: &'t Result<DriveTarget, ErrorTextWithHelp>,
+    path: &'t Result<FileForceTarget, ErrorTextWithHelp>,
     help: &'static str,
     cx: &mut Cx<'_>,
-) -> Option<&'t DriveTarget> {
+) -> Option<&'t FileForceTarget> {
     match path {
         Ok(on) => Some(on),
         Err(refusal) => {
@@ -99,11 +99,11 @@ impl<'a> MjcfReader<'a> {
             let terms = self.read_tendon_terms(node, cx);
             let rest_coordinate_of_joint = |joint: &Name| self.rests.get(&joint.text).copied().unwrap_or(0.0);
             let rest = terms.iter().map(|(joint, weight)| weight * rest_coordinate_of_joint(joint)).sum();
-            (Ok(DriveTarget::Sum(terms)), rest)
+            (Ok(FileForceTarget::Sum(terms)), rest)
         } else {
-            let path = self.read_path(node, cx)?;
-            let rest = path.as_ref().map_or(0.0, |path| path.length(&self.poses_with_relaxed_springs()));
-            (path.map(|path| DriveTarget::Length(path.path_length_expression())), rest)
+            let path = self.read_tendon_path(node, cx)?;
+            let rest = path.as_ref().map_or(0.0, |path| path.path_length(&self.poses_with_relaxed_springs()));
+            (path.map(|path| FileForceTarget::Length(path.path_length_expression())), rest)
         };
         for (limited, range, what) in
             [("limited", "range", "limits"), ("actuatorfrclimited", "actuatorfrcrange", "largest force")]
@@ -117,25 +117,27 @@ impl<'a> MjcfReader<'a> {
             if found.value < 0.0 {
                 cx.report_error(&found.place, format!("negative armature `{}`", found.value), |d| d);
             }
-            laws.push((DriveLaw::Inerter(found.value), "write `armature=\"0\"` into the tendon"));
+            laws.push((FileForceLaw::Inerter(found.value), "write `armature=\"0\"` into the tendon"));
         }
         if self.springs {
-            report_spring_yield(&element, cx);
+            report_unsupported_spring_yield(&element, cx);
             let stiffness = element.polynomial_force_coefficients("stiffness", cx);
             laws.extend(stiffness.map(|k| (read_tendon_spring(k.value, &element, rest, cx), IGNORE_PASSIVE)));
         }
         if self.dampers {
             let damping = element.polynomial_force_coefficients("damping", cx);
-            laws.extend(damping.map(|found| (DriveLaw::damper(found.value), IGNORE_PASSIVE)));
+            laws.extend(
+                damping.map(|found| (FileForceLaw::polynomial_damper_law(found.value), IGNORE_PASSIVE)),
+            );
         }
         if self.friction {
             let loss = element.nonzero_attribute_number("frictionloss", cx);
-            laws.extend(loss.map(|found| (DriveLaw::Friction(found.value), IGNORE_PASSIVE)));
+            laws.extend(loss.map(|found| (FileForceLaw::Friction(found.value), IGNORE_PASSIVE)));
         }
         if let Some((_, help)) = laws.first()
             && let Some(on) = target_or_reported_error(&path, help, cx)
         {
-            let drive_on_tendon = |law| Drive { name: named.clone(), on: on.clone(), law };
+            let drive_on_tendon = |law| FileForceElement { name: named.clone(), on: on.clone(), law };
             self.robot.drives.extend(laws.iter().map(|(law, _)| drive_on_tendon(law.clone())));
         }
         Some(Tendon { name: named, path })
@@ -150,7 +152,7 @@ impl<'a> MjcfReader<'a> {
             });
         }
         for child in child_elements(node) {
-            check_attributes(child, &["joint", "coef"], &[], cx);
+            report_missing_or_misspelt_attributes(child, &["joint", "coef"], &[], cx);
             let joint = read_name_attribute(child, "joint", cx)
                 .filter(|joint| self.check_single_coordinate_joint(joint, "pull on", cx));
             if let Some(joint) = &joint
@@ -169,13 +171,13 @@ impl<'a> MjcfReader<'a> {
     /// types.
     pub(super) fn check_single_coordinate_joint(&self, joint: &Name, verb: &str, cx: &mut Cx<'_>) -> bool {
         let Some(found) = self.robot.joints.iter().find(|known| known.name.text == joint.text) else {
-            let known = self.robot.joints.iter().filter(|joint| has_coordinate(joint.kind));
+            let known = self.robot.joints.iter().filter(|joint| has_single_coordinate(joint.kind));
             let known: Vec<&str> = known.map(|joint| joint.name.text.as_str()).collect();
             let message = format!("unknown joint {}", quote_word(&joint.text));
             cx.report_error(&joint.place, message, |d| d.suggest_name(&joint.text, known.iter().copied()));
             return false;
         };
-        if !found.has_coordinate() {
+        if !found.has_single_coordinate() {
             let message = format!(
                 "joint {} is `{}`: a joint with several coordinates cannot {verb}",
                 quote_word(&joint.text),
@@ -191,7 +193,12 @@ impl<'a> MjcfReader<'a> {
 /// Reads the spring of a tendon. The attribute `springlength` specifies its free length or a range of free
 /// lengths; −1 means that neither is specified. In this case the free length is that in the configuration in
 /// which all joint springs are relaxed.
-fn read_tendon_spring(stiffness: [f64; 3], element: &Element<'_>, rest: f64, cx: &mut Cx<'_>) -> DriveLaw {
+fn read_tendon_spring(
+    stiffness: [f64; 3],
+    element: &ElementWithDefaults<'_>,
+    rest: f64,
+    cx: &mut Cx<'_>,
+) -> FileForceLaw {
     const NONE: f64 = -1.0;
     // A single length is the range of two equal ones, even if the defaults have two different ones.
     let found = element
@@ -206,8 +213,8 @@ fn read_tendon_spring(stiffness: [f64; 3], element: &Element<'_>, rest: f64, cx:
         });
     }
     match [low, high] {
-        [NONE, NONE] => DriveLaw::spring(stiffness, rest),
-        [low, high] if low < high => DriveLaw::Slack { stiffness, range: [low, high] },
-        [low, _] => DriveLaw::spring(stiffness, low),
+        [NONE, NONE] => FileForceLaw::polynomial_spring_law(stiffness, rest),
+        [low, high] if low < high => FileForceLaw::Slack { stiffness, range: [low, high] },
+        [low, _] => FileForceLaw::polynomial_spring_law(stiffness, low),
     }
 }

@@ -1,9 +1,9 @@
 //! MJCF contact parameters of shapes, and contacts between two shapes.
 
-use super::defaults::Element;
+use super::defaults::ElementWithDefaults;
 use crate::diag::Place;
 use crate::import::context::Cx;
-use crate::import::pose::{FilePose, Vector, matrix_times_vector};
+use crate::import::pose::{NumericPose, Vector, matrix_times_vector};
 use crate::syntax::{
     Contact, Expr, ExprKind, FileContact, Key, Name, Shape, SurfaceId, SurfaceSize, WrittenArguments,
 };
@@ -25,9 +25,9 @@ pub(super) struct MjcfContactParameters {
 }
 
 /// Form of an MJCF shape in contacts.
-pub(super) enum ContactForm {
+pub(super) enum ContactGeometry {
     /// Plane, with its pose relative to its link.
-    Plane(FilePose),
+    Plane(NumericPose),
     /// Collision shape of its link.
     Solid {
         /// Index of the shape among the collision shapes of its link.
@@ -43,7 +43,7 @@ pub(super) enum ContactForm {
 pub(super) struct ContactShape {
     /// Index of the link that carries the shape.
     pub(super) link: usize,
-    pub(super) form: ContactForm,
+    pub(super) form: ContactGeometry,
     pub(super) name: Option<String>,
     pub(super) law: MjcfContactParameters,
     pub(super) place: Place,
@@ -52,7 +52,10 @@ pub(super) struct ContactShape {
 impl MjcfContactParameters {
     /// Reads the contact parameters of a shape with their defaults. Reports contact forces that are not
     /// supported.
-    pub(super) fn read_contact_law(shape: &Element<'_>, cx: &mut Cx<'_>) -> MjcfContactParameters {
+    pub(super) fn read_contact_parameters(
+        shape: &ElementWithDefaults<'_>,
+        cx: &mut Cx<'_>,
+    ) -> MjcfContactParameters {
         for which in ["adhesion", "surfacevel"] {
             let found = shape.numbers_with_defaults(which, [0.0; 6], cx);
             if let Some(found) = found.filter(|found| found.value != [0.0; 6]) {
@@ -72,7 +75,7 @@ impl MjcfContactParameters {
     }
 
     /// Reads the bit masks `contype` and `conaffinity` of a shape.
-    pub(super) fn read_masks(shape: &Element<'_>, cx: &mut Cx<'_>) -> [u32; 2] {
+    pub(super) fn read_masks(shape: &ElementWithDefaults<'_>, cx: &mut Cx<'_>) -> [u32; 2] {
         ["contype", "conaffinity"]
             .map(|attribute| shape.read_finite_attribute(attribute, cx).map_or(1, |bits| bits.value as u32))
     }
@@ -99,7 +102,7 @@ impl MjcfContactParameters {
 }
 
 /// Reads `condim`, the dimension of a contact.
-pub(super) fn read_contact_dimension(element: &Element<'_>, cx: &mut Cx<'_>) -> f64 {
+pub(super) fn read_contact_dimension(element: &ElementWithDefaults<'_>, cx: &mut Cx<'_>) -> f64 {
     let Some(found) = element.read_finite_attribute("condim", cx) else { return DIMENSION };
     if ![1.0, 3.0, 4.0, 6.0].contains(&found.value) {
         cx.report_error(&found.place, format!("`condim` is {}", found.value), |d| {
@@ -115,24 +118,24 @@ pub(super) fn friction_of_dimension(dimension: f64, friction: [f64; 3]) -> [f64;
     std::array::from_fn(|k| if dimension < least[k] { 0.0 } else { friction[k] })
 }
 
-impl ContactForm {
+impl ContactGeometry {
     /// Returns the surface of the form, without the size of a mesh.
-    fn surface(&self) -> SurfaceSize {
+    fn surface_size(&self) -> SurfaceSize {
         let id = match self {
-            ContactForm::Plane(_) => SurfaceId::Plane,
-            ContactForm::Solid { shape, .. } => shape.surface(),
+            ContactGeometry::Plane(_) => SurfaceId::Plane,
+            ContactGeometry::Solid { shape, .. } => shape.surface(),
         };
         SurfaceSize { id: Some(id), vertices: 0, corners: 0 }
     }
 
     /// Whether Linkwork supports the contact of two forms.
-    pub(super) fn supports_contact_with(&self, other: &ContactForm) -> bool {
-        self.surface().contact_point_count(&other.surface()).is_some()
+    pub(super) fn supports_contact_with(&self, other: &ContactGeometry) -> bool {
+        self.surface_size().contact_point_count(&other.surface_size()).is_some()
     }
 
     /// Whether the form is a plane.
     pub(super) fn is_plane(&self) -> bool {
-        matches!(self, ContactForm::Plane(_))
+        matches!(self, ContactGeometry::Plane(_))
     }
 }
 
@@ -142,12 +145,12 @@ impl ContactShape {
         let at = &self.place;
         let link = Expr { kind: ExprKind::Name(link.to_string()), place: at.clone() };
         match &self.form {
-            ContactForm::Plane(pose) => {
+            ContactGeometry::Plane(pose) => {
                 let normal = Expr::vector_at(matrix_times_vector(&pose.axes, [0.0, 0.0, 1.0]), at);
                 let point = Expr::method_call(link, "at", vec![Expr::vector_at(pose.at, at)]);
                 Expr::method_call(point, "plane", vec![normal])
             }
-            ContactForm::Solid { number, .. } => {
+            ContactGeometry::Solid { number, .. } => {
                 Expr::method_call(link, "collision", vec![Expr::number_at(*number as f64, at)])
             }
         }

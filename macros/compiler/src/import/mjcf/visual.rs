@@ -1,11 +1,11 @@
 //! Geometry → shapes to draw. They appear in no equation, so unsupported shapes are skipped without an error.
 
 use super::body::ElementWithPose;
-use super::defaults::Element;
+use super::defaults::ElementWithDefaults;
 use super::reader::{MjcfReader, origin_of_pose};
 use crate::import::context::Cx;
 use crate::import::element::element_source_position;
-use crate::import::pose::FilePose;
+use crate::import::pose::NumericPose;
 use crate::import::robot::FileVisual;
 use crate::syntax::{Mesh, Shape};
 
@@ -16,12 +16,13 @@ impl<'a> MjcfReader<'a> {
         if !self.options.visuals {
             return;
         }
-        let mut touches = |shape: &Element<'a>| {
+        let mut has_nonzero_contact_mask = |shape: &ElementWithDefaults<'a>| {
             let mut bits =
                 |attribute: &str| shape.read_finite_attribute(attribute, cx).map_or(1.0, |bits| bits.value);
             bits("contype") != 0.0 || bits("conaffinity") != 0.0
         };
-        let seen: Vec<&ElementWithPose<'a>> = shapes.iter().filter(|(shape, _)| !touches(shape)).collect();
+        let seen: Vec<&ElementWithPose<'a>> =
+            shapes.iter().filter(|(shape, _)| !has_nonzero_contact_mask(shape)).collect();
         let seen = if seen.is_empty() { shapes.iter().collect() } else { seen };
         for (shape, outer) in seen {
             let Some((kind, mesh, pose)) = self.visual_shape(shape, cx) else { continue };
@@ -32,8 +33,12 @@ impl<'a> MjcfReader<'a> {
         }
     }
 
-    fn visual_shape(&self, shape: &Element<'a>, cx: &mut Cx<'_>) -> Option<(Shape, Option<Mesh>, FilePose)> {
-        match shape.trimmed_text("type").unwrap_or("sphere") {
+    fn visual_shape(
+        &self,
+        shape: &ElementWithDefaults<'a>,
+        cx: &mut Cx<'_>,
+    ) -> Option<(Shape, Option<Mesh>, NumericPose)> {
+        match shape.trimmed_attribute_text("type").unwrap_or("sphere") {
             "mesh" => {
                 let pose = super::frame::read_pose(shape, &self.settings, cx);
                 Some((Shape::Mesh, Some(self.meshes.mesh_to_draw(shape, cx)?), pose))

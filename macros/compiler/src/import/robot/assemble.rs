@@ -27,12 +27,12 @@ pub(in crate::import) fn assemble_mechanism(
     let collisions = robot
         .collisions
         .iter()
-        .filter_map(|(link, part)| Some(part.part_on_link(&robot.links.get(*link)?.name)));
+        .filter_map(|(link, part)| Some(part.collision_on_link(&robot.links.get(*link)?.name)));
     let collisions = collisions.collect();
     let visuals = robot
         .visuals
         .iter()
-        .filter_map(|(link, part)| Some(part.part_on_link(&robot.links.get(*link)?.name)));
+        .filter_map(|(link, part)| Some(part.visual_on_link(&robot.links.get(*link)?.name)));
     let visuals = visuals.collect();
     let root = root_joint(&robot, order.root, options.base);
     let mut links: Vec<Option<Body>> = robot.links.into_iter().map(Some).collect();
@@ -68,8 +68,8 @@ pub(in crate::import) fn assemble_mechanism(
         })
         .unzip();
     // The order has all of them.
-    links.iter().flatten().for_each(|link| cx.report_lost_element(&link.name));
-    given.iter().flatten().for_each(|(joint, _)| cx.report_lost_element(&joint.name));
+    links.iter().flatten().for_each(|link| cx.report_internal_loss_of_element(&link.name));
+    given.iter().flatten().for_each(|(joint, _)| cx.report_internal_loss_of_element(&joint.name));
     ImportedMechanism {
         bodies,
         joints,
@@ -164,7 +164,7 @@ fn build_joint(given: FileJoint, motion: JointMotion, options: &FileOptions, cx:
         let child = endpoint_of_child(given.anchor, &given);
         return plain_joint(given.name, JointKind::Weld, parent, child);
     }
-    let alone = given.has_coordinate();
+    let alone = given.has_single_coordinate();
     let mut joint = convert_file_joint(given);
     match motion {
         JointMotion::Follows(mimic) => joint.mimic = Some(mimic),
@@ -197,7 +197,7 @@ fn move_parent_endpoint(end: &mut Endpoint, given: &FileJoint, coordinate: f64, 
         return;
     }
     let axis = unit_vector(given.axis.value);
-    match given.kind.rotates_about_one_axis() {
+    match given.kind.single_axis_joint_is_rotational() {
         Some(true) => end.rotated.push(rotation_about_axis(axis, coordinate, given)),
         Some(false) => {
             let shift = given.origin.rotate_vector(axis);

@@ -41,8 +41,8 @@ pub(in crate::import) fn remove_loop_closing_joints(robot: &mut Robot) {
 
 /// Reports the first joint that is declared to close a loop.
 pub(in crate::import) fn refuse_declared_loops(robot: &Robot, cx: &mut Cx<'_>) {
-    let is_declared = |joint: &&FileJoint| robot.declared_closing.contains(&joint.name.text);
-    if let Some(joint) = robot.joints.iter().find(is_declared) {
+    let is_declared_closing_joint = |joint: &&FileJoint| robot.declared_closing.contains(&joint.name.text);
+    if let Some(joint) = robot.joints.iter().find(is_declared_closing_joint) {
         let message = format!("{} closes a loop", quote_word(&joint.name.text));
         cx.report_error(&joint.name.place, message, |d| d.add_help(CLOSE).add_help(OPEN));
     }

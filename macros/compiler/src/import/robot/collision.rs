@@ -18,7 +18,7 @@ pub(in crate::import) struct FileCollisionShape {
 
 impl FileCollisionShape {
     /// Converts the shape to collision geometry of the link with this name.
-    pub(in crate::import) fn part_on_link(&self, link: &Name) -> Collision {
+    pub(in crate::import) fn collision_on_link(&self, link: &Name) -> Collision {
         let (at, rotated) = (self.origin.nonzero_position(), self.origin.nonzero_rotations());
         let on = Endpoint { body: link.clone(), at, rotated };
         let (shape, mesh) = (self.shape, self.mesh.clone());

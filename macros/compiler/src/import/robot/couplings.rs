@@ -18,10 +18,13 @@ pub(in crate::import) fn constraints_on_moving_joints(
     cx: &mut Cx<'_>,
 ) -> Vec<Constraint> {
     let frozen = locked_coordinates(joints);
-    constraints.into_iter().filter_map(|constraint| without_locked_joints(constraint, &frozen, cx)).collect()
+    constraints
+        .into_iter()
+        .filter_map(|constraint| constraint_without_locked_joints(constraint, &frozen, cx))
+        .collect()
 }
 
-fn without_locked_joints(
+fn constraint_without_locked_joints(
     mut constraint: Constraint,
     frozen: &BTreeMap<&str, f64>,
     cx: &mut Cx<'_>,

@@ -3,23 +3,26 @@
 
 use super::joint::FileJoint;
 use super::motion::{JointMotion, locked_coordinates};
-use crate::syntax::{Drive, DriveLaw, DriveTarget};
+use crate::syntax::{FileForceElement, FileForceLaw, FileForceTarget};
 use std::collections::BTreeMap;
 
 /// Returns the elements that act on at least one moving joint. Inputs without a joint are preserved, because
 /// callers rely on the input's index.
 pub(super) fn drives_of_moving_joints(
-    drives: Vec<Drive>,
+    drives: Vec<FileForceElement>,
     joints: &[Option<(FileJoint, JointMotion)>],
-) -> Vec<Drive> {
+) -> Vec<FileForceElement> {
     let frozen = locked_coordinates(joints);
-    drives.into_iter().filter_map(|drive| without_locked_joints(drive, &frozen)).collect()
+    drives.into_iter().filter_map(|drive| drive_without_locked_joints(drive, &frozen)).collect()
 }
 
 /// Returns the element without the locked joints. Their contributions are subtracted from free lengths and
 /// ranges.
-fn without_locked_joints(mut drive: Drive, frozen: &BTreeMap<&str, f64>) -> Option<Drive> {
-    let DriveTarget::Sum(terms) = &mut drive.on else { return Some(drive) };
+fn drive_without_locked_joints(
+    mut drive: FileForceElement,
+    frozen: &BTreeMap<&str, f64>,
+) -> Option<FileForceElement> {
+    let FileForceTarget::Sum(terms) = &mut drive.on else { return Some(drive) };
     let mut offset = 0.0;
     terms.retain(|(joint, weight)| match frozen.get(joint.text.as_str()) {
         Some(at) => {
@@ -29,17 +32,17 @@ fn without_locked_joints(mut drive: Drive, frozen: &BTreeMap<&str, f64>) -> Opti
         None => true,
     });
     match &mut drive.law {
-        DriveLaw::Spring { free, .. } => *free -= offset,
-        DriveLaw::Slack { range, .. } => range.iter_mut().for_each(|end| *end -= offset),
-        DriveLaw::Expression { offset: constant, .. } => *constant = offset,
-        DriveLaw::Damper(_)
-        | DriveLaw::PolynomialDamper(_)
-        | DriveLaw::Friction(_)
-        | DriveLaw::Inerter(_)
-        | DriveLaw::Push(_)
-        | DriveLaw::Input(_) => {}
+        FileForceLaw::Spring { free, .. } => *free -= offset,
+        FileForceLaw::Slack { range, .. } => range.iter_mut().for_each(|end| *end -= offset),
+        FileForceLaw::Expression { offset: constant, .. } => *constant = offset,
+        FileForceLaw::Damper(_)
+        | FileForceLaw::PolynomialDamper(_)
+        | FileForceLaw::Friction(_)
+        | FileForceLaw::Inerter(_)
+        | FileForceLaw::Push(_)
+        | FileForceLaw::Input(_) => {}
     }
     // The rates of states may contain the length of an element that acts on nothing.
-    let is_kept = matches!(drive.law, DriveLaw::Input(_) | DriveLaw::Expression { .. });
+    let is_kept = matches!(drive.law, FileForceLaw::Input(_) | FileForceLaw::Expression { .. });
     (!terms.is_empty() || is_kept).then_some(drive)
 }

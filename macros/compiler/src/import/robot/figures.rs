@@ -60,13 +60,14 @@ fn add_inertial_fields(
         }
         found = true;
         let Some(values) = mass_properties(body) else {
-            cx.report_lost_element(&body.name);
+            cx.report_internal_loss_of_element(&body.name);
             continue;
         };
         let units = ["kg", "m", "m", "m", "kg·m²", "kg·m²", "kg·m²", "kg·m²", "kg·m²", "kg·m²"].to_vec();
         let about = format!("Mass properties of the {link} `{}`.", body.name.text);
         let of = &body.name.text;
-        let e = add(FileFieldKind::Inertial, of, "", about, (values, units), &name.place, fields);
+        let e =
+            add_field_of_values(FileFieldKind::Inertial, of, "", about, (values, units), &name.place, fields);
         let [mass, x, y, z, xx, xy, xz, yy, yz, zz] = e.as_slice() else { continue };
         let array_expression = |items: [&Expr; 3]| Expr {
             kind: ExprKind::Array(items.map(Clone::clone).to_vec()),
@@ -122,13 +123,20 @@ fn add_joint_fields(
         let describe_joint_parameter = |what: &str| format!("{what} of the joint `{of}`.");
         if word == PLACEMENT {
             let Some(values) = joint_placement(joint) else {
-                cx.report_lost_element(&joint.name);
+                cx.report_internal_loss_of_element(&joint.name);
                 continue;
             };
             let units = vec!["m", "m", "m", "rad", "rad", "rad"];
             let description = describe_joint_parameter(&format!("Place, on the parent {link},"));
-            let e =
-                add(FileFieldKind::Placement, of, word, description, (values, units), &name.place, fields);
+            let e = add_field_of_values(
+                FileFieldKind::Placement,
+                of,
+                word,
+                description,
+                (values, units),
+                &name.place,
+                fields,
+            );
             let expression_with_span_of_name = |e| Expr { kind: e, place: name.place.clone() };
             joint.parent.at = Some(expression_with_span_of_name(ExprKind::Array(e[..3].to_vec())));
             let turns = [("z", 5), ("y", 4), ("x", 3)];
@@ -146,10 +154,10 @@ fn add_joint_fields(
         };
         debug_assert!([DAMPING, FRICTION].contains(&word));
         let Some(value) = slot.as_ref().map_or(Some(0.0), Expr::literal_number) else {
-            cx.report_lost_element(&joint.name);
+            cx.report_internal_loss_of_element(&joint.name);
             continue;
         };
-        let e = add(
+        let e = add_field_of_values(
             FileFieldKind::Number,
             of,
             word,
@@ -189,7 +197,7 @@ fn requested_link_or_joint_names(
 }
 
 /// Adds a field for several values of the file, and returns one expression for each value.
-fn add(
+fn add_field_of_values(
     kind: FileFieldKind,
     of: &str,
     word: &str,

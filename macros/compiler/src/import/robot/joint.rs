@@ -45,7 +45,7 @@ pub(in crate::import) struct FileJoint {
 impl FileJoint {
     /// Returns the joint of a parent and a child link, without limits, passive forces and relations to other
     /// joints. The child's origin is on the joint.
-    pub(in crate::import) fn from_links(
+    pub(in crate::import) fn joint_between_links(
         name: Name,
         (kind, word): (JointKind, &'static str),
         [parent, child]: [Name; 2],
@@ -79,12 +79,12 @@ impl FileJoint {
         origin: FileOrigin,
     ) -> FileJoint {
         let axis = Located { value: [0.0, 0.0, 1.0], place: name.place.clone() };
-        FileJoint::from_links(name, (JointKind::Weld, word), links, origin, axis)
+        FileJoint::joint_between_links(name, (JointKind::Weld, word), links, origin, axis)
     }
 
     /// Returns whether the joint has exactly one coordinate, to which limits and locks refer.
-    pub(in crate::import) fn has_coordinate(&self) -> bool {
-        has_coordinate(self.kind)
+    pub(in crate::import) fn has_single_coordinate(&self) -> bool {
+        has_single_coordinate(self.kind)
     }
 
     /// Returns whether the joint moves about or along an axis.
@@ -94,8 +94,8 @@ impl FileJoint {
 }
 
 /// Returns whether joints of this type have exactly one coordinate, to which limits and locks refer.
-pub(in crate::import) fn has_coordinate(kind: JointKind) -> bool {
-    kind.rotates_about_one_axis().is_some()
+pub(in crate::import) fn has_single_coordinate(kind: JointKind) -> bool {
+    kind.single_axis_joint_is_rotational().is_some()
 }
 
 /// Returns true if joints of this type move about or along an axis.

@@ -53,7 +53,7 @@ pub(in crate::import) fn resolve_motions(
     }
     let motions = (0..joints.len()).map(|k| match locked[k] {
         true => JointMotion::Frozen(joints[k].held.unwrap_or(0.0)),
-        false => follow_leaders(k, joints, &leaders, &locked, cx),
+        false => compose_leader_relations(k, joints, &leaders, &locked, cx),
     });
     Some(motions.collect())
 }
@@ -70,13 +70,13 @@ fn find_leader(
     let place = &mimic.joint.place;
     let Some(leader) = index.get(mimic.joint.text.as_str()).copied() else {
         let names =
-            joints.iter().filter(|other| other.has_coordinate()).map(|other| other.name.text.as_str());
+            joints.iter().filter(|other| other.has_single_coordinate()).map(|other| other.name.text.as_str());
         let message = format!("unknown joint {}", quote_word(&mimic.joint.text));
         cx.report_error(place, message, |d| d.suggest_name(&mimic.joint.text, names).add_help(MOVE_ALONE));
         return None;
     };
     for (which, one) in [("follow", joint), ("be followed", &joints[leader])] {
-        if !one.has_coordinate() {
+        if !one.has_single_coordinate() {
             let name = quote_word(&one.name.text);
             let message = format!("joint {name} is `{}` and cannot {which}", one.word);
             cx.report_error(place, message, |d| d.add_help(MOVE_ALONE));
@@ -114,7 +114,7 @@ fn report_leader_cycles(joints: &[FileJoint], leaders: &[Option<usize>], cx: &mu
 }
 
 /// Follows the chain of leaders to its end and composes the relations: `q = factor × q_leader + offset`.
-fn follow_leaders(
+fn compose_leader_relations(
     start: usize,
     joints: &[FileJoint],
     leaders: &[Option<usize>],

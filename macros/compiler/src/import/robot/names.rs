@@ -8,7 +8,7 @@ use crate::syntax::{Base, FileFormat, GROUND, Name};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Reports links that share a name, and joints that share a name.
-pub(in crate::import) fn check_names(robot: &Robot, format: FileFormat, cx: &mut Cx<'_>) {
+pub(in crate::import) fn check_unique_names(robot: &Robot, format: FileFormat, cx: &mut Cx<'_>) {
     report_repeated_names(robot.links.iter().map(|link| &link.name), format.word_for_body(), cx);
     report_repeated_names(robot.joints.iter().map(|joint| &joint.name), "joint", cx);
 }
@@ -28,7 +28,7 @@ pub(in crate::import) fn declare_world_link(robot: &mut Robot) {
 
 /// Renames a link `ground` to `ground_link`, because `ground` is the name of the fixed frame. The root of a
 /// fixed mechanism may be called `ground`.
-pub(in crate::import) fn rename_ground(robot: &mut Robot, base: Base) {
+pub(in crate::import) fn rename_link_named_ground(robot: &mut Robot, base: Base) {
     if base == Base::Fixed && !robot.joints.iter().any(|joint| joint.child.text == GROUND) {
         return;
     }
@@ -91,7 +91,7 @@ pub(in crate::import) fn report_wrong_joint_ends(robot: &Robot, format: FileForm
             let message = format!("joint {} connects a link to itself", quote_word(&joint.name.text));
             cx.report_error(&joint.child.place, message, |d| d);
         } else if let Some(first) = parents.get(joint.child.text.as_str()) {
-            // Repeated joint names are reported by `check_names`.
+            // Repeated joint names are reported by `check_unique_names`.
             if first.name.text == joint.name.text {
                 continue;
             }

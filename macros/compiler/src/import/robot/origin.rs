@@ -2,7 +2,7 @@
 
 use crate::diag::Place;
 use crate::import::imported::Located;
-use crate::import::pose::{FilePose, axis_rotation, matrix_product, roll_pitch_yaw};
+use crate::import::pose::{NumericPose, axis_rotation, matrix_product, roll_pitch_yaw};
 use crate::syntax::Expr;
 
 /// Pose of a frame as a robot file specifies it: position and rotation.
@@ -28,11 +28,14 @@ impl FileOrigin {
     }
 
     /// Returns the pose as position and axes, exact at multiples of a right angle.
-    pub(in crate::import) fn pose(&self) -> FilePose {
+    pub(in crate::import) fn pose(&self) -> NumericPose {
         let [roll, pitch, yaw] = self.rpy.value;
         let tilted =
             matrix_product(&axis_rotation([0.0, 1.0, 0.0], pitch), &axis_rotation([1.0, 0.0, 0.0], roll));
-        FilePose { at: self.xyz.value, axes: matrix_product(&axis_rotation([0.0, 0.0, 1.0], yaw), &tilted) }
+        NumericPose {
+            at: self.xyz.value,
+            axes: matrix_product(&axis_rotation([0.0, 0.0, 1.0], yaw), &tilted),
+        }
     }
 
     /// Rotates a vector from the axes of this frame to those of its reference frame.
@@ -45,7 +48,7 @@ impl FileOrigin {
 }
 
 /// Converts a pose to a [`FileOrigin`].
-pub(in crate::import) fn origin_from_pose(pose: &FilePose, place: &Place) -> FileOrigin {
+pub(in crate::import) fn origin_from_pose(pose: &NumericPose, place: &Place) -> FileOrigin {
     let value_with_source_place = |value| Located { value, place: place.clone() };
     FileOrigin {
         xyz: value_with_source_place(pose.at.map(|x| x + 0.0)),

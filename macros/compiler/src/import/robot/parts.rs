@@ -5,7 +5,7 @@ use super::joint::FileJoint;
 use super::origin::FileOrigin;
 use super::visual::FileVisual;
 use crate::syntax::file_parameters::FileField;
-use crate::syntax::{Body, Constraint, Contact, Drive, Expr, Joint, Name};
+use crate::syntax::{Body, Constraint, Contact, Expr, FileForceElement, Joint, Name};
 use std::collections::BTreeSet;
 
 /// Maximum number of links, and of joints, of one file.
@@ -33,7 +33,7 @@ pub(in crate::import) struct Robot {
     /// Visual geometry, each with the index of its link.
     pub(in crate::import) visuals: Vec<(usize, FileVisual)>,
     /// Springs, dampers, rotors and motors on joint coordinates.
-    pub(in crate::import) drives: Vec<Drive>,
+    pub(in crate::import) drives: Vec<FileForceElement>,
     /// States of first order, each with its field and its rate.
     pub(in crate::import) states: Vec<(FileField, Expr)>,
     /// Rayleigh dissipation functions: damping of ball and free joints, and drag of the surrounding fluid.

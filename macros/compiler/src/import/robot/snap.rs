@@ -11,7 +11,7 @@ use std::f64::consts::FRAC_PI_2;
 /// Returns one line per changed value, with the value before and after.
 pub(in crate::import) fn snap_joint_frame(joint: &mut FileJoint, tolerance: f64) -> Vec<String> {
     let mut found = Vec::new();
-    let mut report = |entry: &str, from: f64, to: f64| {
+    let mut record_snapped_value = |entry: &str, from: f64, to: f64| {
         if from != to {
             found.push(format!("`{}`: {entry} {from:?} → {to:?}", joint.name.text));
         }
@@ -19,13 +19,13 @@ pub(in crate::import) fn snap_joint_frame(joint: &mut FileJoint, tolerance: f64)
     for (angle, entry) in joint.origin.rpy.value.iter_mut().zip(["roll", "pitch", "yaw"]) {
         let right = (*angle / FRAC_PI_2).round() * FRAC_PI_2;
         if (*angle - right).abs() <= tolerance {
-            report(entry, *angle, right);
+            record_snapped_value(entry, *angle, right);
             *angle = right;
         }
     }
     for (x, entry) in joint.origin.xyz.value.iter_mut().zip(["x", "y", "z"]) {
         if x.abs() <= tolerance {
-            report(entry, *x, 0.0);
+            record_snapped_value(entry, *x, 0.0);
             *x = 0.0;
         }
     }
@@ -33,7 +33,7 @@ pub(in crate::import) fn snap_joint_frame(joint: &mut FileJoint, tolerance: f64)
         let of_unit = unit_vector(joint.axis.value).into_iter().zip(["axis x", "axis y", "axis z"]);
         for (c, (part, entry)) in joint.axis.value.iter_mut().zip(of_unit) {
             if part.abs() <= tolerance {
-                report(entry, *c, 0.0);
+                record_snapped_value(entry, *c, 0.0);
                 *c = 0.0;
             }
         }

@@ -15,7 +15,7 @@ pub(in crate::import) struct FileVisual {
 
 impl FileVisual {
     /// Converts the shape to visual geometry of the link with this name.
-    pub(in crate::import) fn part_on_link(&self, link: &Name) -> Visual {
+    pub(in crate::import) fn visual_on_link(&self, link: &Name) -> Visual {
         let on = Endpoint {
             body: link.clone(),
             at: self.origin.nonzero_position(),

@@ -4,8 +4,8 @@ use super::frames::{Frames, element_origin_in_link};
 use super::scope::Scope;
 use crate::import::context::Cx;
 use crate::import::element::{
-    Node, check_attributes, child_elements, children_with_known_names, element_source_position, quoted_tag,
-    read_numbers_content, read_trimmed_content, required_child,
+    Node, child_elements, child_for_each_name, element_source_position, quoted_tag, read_numbers_content,
+    read_trimmed_content, report_missing_or_misspelt_attributes, required_child,
 };
 use crate::import::mesh;
 use crate::import::robot::FileCollisionShape;
@@ -47,43 +47,43 @@ fn read_collision(
     let origin = element_origin_in_link(node, link, frames, cx)?;
     let shape = read_shape(form, cx)?;
     let mesh = match shape {
-        Shape::Mesh => read_mesh(form, folder, cx),
+        Shape::Mesh => mesh_vertex_source(form, folder, cx),
         _ => None,
     };
     Some(FileCollisionShape { origin, shape, mesh, place: element_source_position(node, cx) })
 }
 
 /// Returns the source of the vertices of a mesh; `None` for a part of a mesh.
-fn read_mesh(form: Node<'_>, folder: &Path, cx: &mut Cx<'_>) -> Option<MeshVertices> {
-    let [uri, scale, submesh] = children_with_known_names(form, ["uri", "scale", "submesh"], cx);
+fn mesh_vertex_source(form: Node<'_>, folder: &Path, cx: &mut Cx<'_>) -> Option<MeshVertices> {
+    let [uri, scale, submesh] = child_for_each_name(form, ["uri", "scale", "submesh"], cx);
     let path = read_trimmed_content(required_child(uri, form, "uri", &[], cx)?, cx)?;
     let scale = match scale {
         Some(scale) => read_numbers_content(scale, cx)?.value,
         None => [1.0; 3],
     };
     let paths = mesh::candidate_paths(folder, &path.text);
-    submesh.is_none().then(|| MeshVertices::scaled(path, paths, scale))
+    submesh.is_none().then(|| MeshVertices::scaled_vertices_of_file(path, paths, scale))
 }
 
 /// Reads a child element of an SDF `<geometry>` as a shape.
 pub(super) fn read_shape(shape: Node<'_>, cx: &mut Cx<'_>) -> Option<Shape> {
-    check_attributes(shape, &[], &[], cx);
+    report_missing_or_misspelt_attributes(shape, &[], &[], cx);
     match shape.tag_name().name() {
         "sphere" => {
-            let [radius] = children_with_known_names(shape, ["radius"], cx);
+            let [radius] = child_for_each_name(shape, ["radius"], cx);
             let [radius] = read_lengths(radius, shape, "radius", cx)?;
             Some(Shape::Sphere(radius))
         }
         "box" => {
-            let [size] = children_with_known_names(shape, ["size"], cx);
+            let [size] = child_for_each_name(shape, ["size"], cx);
             Some(Shape::Cuboid(read_lengths(size, shape, "size", cx)?))
         }
         "ellipsoid" => {
-            let [radii] = children_with_known_names(shape, ["radii"], cx);
+            let [radii] = child_for_each_name(shape, ["radii"], cx);
             Some(Shape::Ellipsoid(read_lengths(radii, shape, "radii", cx)?))
         }
         kind @ ("cylinder" | "capsule") => {
-            let [radius, length] = children_with_known_names(shape, ["radius", "length"], cx);
+            let [radius, length] = child_for_each_name(shape, ["radius", "length"], cx);
             let ([radius], [length]) =
                 (read_lengths(radius, shape, "radius", cx)?, read_lengths(length, shape, "length", cx)?);
             Some(if kind == "cylinder" {

@@ -6,9 +6,9 @@ use crate::diag::Place;
 use crate::import::context::{Cx, quote_word};
 use crate::import::element::{
     Attribute, Node, check_attributes_of_value_element, child_elements, element_source_position,
-    nonblank_known_contents, read_numbers_content, report_duplicate, report_likely_degrees,
+    nonblank_texts_and_own_elements, read_numbers_content, report_duplicate, report_likely_degrees,
 };
-use crate::import::pose::{FilePose, IDENTITY, axis_rotation, matrix_product, rotation_of_quaternion};
+use crate::import::pose::{IDENTITY, NumericPose, axis_rotation, matrix_product, rotation_of_quaternion};
 use crate::import::robot::{FileOrigin, origin_from_pose};
 use crate::syntax::Name;
 use std::collections::BTreeMap;
@@ -22,7 +22,7 @@ pub(super) struct SdfFrame {
     /// Full name of the frame that the pose is relative to.
     pub(super) base: Name,
     /// Pose of the SDF frame relative to the frame `base`.
-    pub(super) pose: FilePose,
+    pub(super) pose: NumericPose,
     /// Frame that this frame is attached to; `None` for links.
     pub(super) attached: Option<Name>,
 }
@@ -46,7 +46,7 @@ pub(super) fn read_relative_pose(node: Node<'_>, scope: &Scope, base: &str, cx: 
     let Some(found) = poses.next() else {
         return SdfFrame {
             base: base_frame_name(element_source_position(node, cx)),
-            pose: FilePose::ZERO,
+            pose: NumericPose::ZERO,
             attached: None,
         };
     };
@@ -57,13 +57,13 @@ pub(super) fn read_relative_pose(node: Node<'_>, scope: &Scope, base: &str, cx: 
     let base = match reference_frame_attribute(found, cx) {
         Some(said) => {
             let name = said.value().trim();
-            let text = name_of_own_frame(found, name, scope).unwrap_or_else(|| scope.full_name(name));
+            let text = full_name_of_inner_frame(found, name, scope).unwrap_or_else(|| scope.full_name(name));
             Name { text, place: cx.source_position(said.range_value().start) }
         }
         None => base_frame_name(element_source_position(found, cx)),
     };
-    let is_empty = nonblank_known_contents(found).next().is_none();
-    let pose = if is_empty { FilePose::ZERO } else { read_pose(found, cx).unwrap_or(FilePose::ZERO) };
+    let is_empty = nonblank_texts_and_own_elements(found).next().is_none();
+    let pose = if is_empty { NumericPose::ZERO } else { read_pose(found, cx).unwrap_or(NumericPose::ZERO) };
     SdfFrame { base, pose, attached: None }
 }
 
@@ -82,11 +82,14 @@ pub(super) fn reference_frame_attribute<'a>(pose: Node<'a>, cx: &mut Cx<'_>) -> 
 
 /// Returns the full name of the frame `name` if the link or joint around a pose declares this frame inside
 /// itself, as versions 1.5 and 1.6 allow.
-fn name_of_own_frame(pose: Node<'_>, name: &str, scope: &Scope) -> Option<String> {
+fn full_name_of_inner_frame(pose: Node<'_>, name: &str, scope: &Scope) -> Option<String> {
     let owner = pose.ancestors().find(|above| matches!(above.tag_name().name(), "link" | "joint"))?;
     let is_declared = frame_elements_inside(owner).any(|frame| frame.attribute("name") == Some(name));
     is_declared.then(|| {
-        name_in_owner(&scope.full_name_of_declared_element(owner.attribute("name").unwrap_or_default()), name)
+        full_name_in_owner(
+            &scope.full_name_of_declared_element(owner.attribute("name").unwrap_or_default()),
+            name,
+        )
     })
 }
 
@@ -100,7 +103,7 @@ pub(super) fn frame_elements_inside<'a>(owner: Node<'a>) -> impl Iterator<Item =
 }
 
 /// Returns the full name of a frame that a link or a joint declares inside itself.
-pub(super) fn name_in_owner(owner: &str, name: &str) -> String {
+pub(super) fn full_name_in_owner(owner: &str, name: &str) -> String {
     format!("{owner}::{name}")
 }
 
@@ -110,7 +113,7 @@ pub(super) fn pose_in_link(
     (link, scope): (&Name, &Scope),
     frames: &Frames,
     cx: &mut Cx<'_>,
-) -> Option<FilePose> {
+) -> Option<NumericPose> {
     let frame = read_relative_pose(node, scope, &link.text, cx);
     Some(
         frames
@@ -133,7 +136,7 @@ pub(super) fn element_origin_in_link(
 const RADIANS: &str = "a pose is in radians: write the angle that is meant, or `<pose degrees=\"true\">`, \
                        everywhere in the file";
 
-fn read_pose(node: Node<'_>, cx: &mut Cx<'_>) -> Option<FilePose> {
+fn read_pose(node: Node<'_>, cx: &mut Cx<'_>) -> Option<NumericPose> {
     if node.attribute("rotation_format") == Some("quat_xyzw") {
         let [x, y, z, a, b, c, w] = read_numbers_content(node, cx)?.value;
         let size = (a * a + b * b + c * c + w * w).sqrt();
@@ -142,7 +145,7 @@ fn read_pose(node: Node<'_>, cx: &mut Cx<'_>) -> Option<FilePose> {
             cx.report_error(&element_source_position(node, cx), message, |d| d);
             return None;
         }
-        return Some(FilePose {
+        return Some(NumericPose {
             at: [x, y, z],
             axes: rotation_of_quaternion([w, a, b, c].map(|x| x / size)),
         });
@@ -158,7 +161,7 @@ fn read_pose(node: Node<'_>, cx: &mut Cx<'_>) -> Option<FilePose> {
     let axes = turns.into_iter().fold(IDENTITY, |whole, (axis, turn)| {
         matrix_product(&whole, &axis_rotation(axis, angle_in_radians(turn)))
     });
-    Some(FilePose { at: [x, y, z], axes })
+    Some(NumericPose { at: [x, y, z], axes })
 }
 
 impl Frames {
@@ -191,8 +194,8 @@ impl Frames {
     }
 
     /// Returns the pose of a frame relative to the world. Reports unknown names and cycles.
-    pub(super) fn resolve_world_pose(&self, name: &Name, cx: &mut Cx<'_>) -> Option<FilePose> {
-        let mut pose = FilePose::ZERO;
+    pub(super) fn resolve_world_pose(&self, name: &Name, cx: &mut Cx<'_>) -> Option<NumericPose> {
+        let mut pose = NumericPose::ZERO;
         let mut at = name.clone();
         for _ in 0..MAX_DEPTH {
             if at.text == WORLD {

@@ -7,8 +7,8 @@ use super::version;
 use crate::diag::Diagnostics;
 use crate::import::context::{Cx, quote_word};
 use crate::import::element::{
-    Node, check_attributes, child_elements, element_source_position, nonblank_known_contents,
-    read_trimmed_content, report_duplicate,
+    Node, child_elements, element_source_position, nonblank_texts_and_own_elements, read_trimmed_content,
+    report_duplicate, report_missing_or_misspelt_attributes,
 };
 use crate::import::whole::{
     ComposedText, LoadedRobotFile, MAX_DEPTH, MAX_FILES, canonical_path, report_include_cycle,
@@ -24,12 +24,12 @@ use std::path::{Path, PathBuf};
 const INCLUDE: [&str; 6] = ["uri", "name", "pose", "static", "plugin", "placement_frame"];
 
 /// Half-open range of bytes in a file.
-type Range = std::ops::Range<usize>;
+type ByteRange = std::ops::Range<usize>;
 
 /// Step of the expansion. The list of steps is a stack: the last step is executed first.
 enum ModelExpansionStep {
     /// Expansion step that copies a range of bytes of the file with this index.
-    Copy(usize, Range),
+    Copy(usize, ByteRange),
     /// Inserted text, attributed to a byte of a file: text, index of the file, offset.
     Put(String, usize, usize),
     /// Expansion step at the start of an included file.
@@ -44,9 +44,9 @@ struct Include {
     by: usize,
     from: usize,
     uri: Name,
-    name: Option<Range>,
-    pose: Option<Range>,
-    plugins: Vec<Range>,
+    name: Option<ByteRange>,
+    pose: Option<ByteRange>,
+    plugins: Vec<ByteRange>,
     depth: usize,
 }
 
@@ -246,7 +246,7 @@ fn read_include(
     depth: usize,
     cx: &mut Cx<'_>,
 ) -> Option<Include> {
-    check_attributes(node, &[], &["merge"], cx);
+    report_missing_or_misspelt_attributes(node, &[], &["merge"], cx);
     if node.attribute("merge").is_some_and(|merge| matches!(merge.trim(), "true" | "1")) {
         cx.report_error(
             &element_source_position(node, cx),
@@ -259,7 +259,8 @@ fn read_include(
     let (mut own_name, mut pose, mut plugins) = (None, None, Vec::new());
     let mut seen: BTreeMap<&str, Node<'_>> = BTreeMap::new();
     for child in child_elements(node) {
-        let text_range_of_child = || nonblank_known_contents(child).find(Node::is_text).map(trimmed_range);
+        let text_range_of_child =
+            || nonblank_texts_and_own_elements(child).find(Node::is_text).map(trimmed_range);
         let kind = child.tag_name().name();
         if let Some(first) = seen.insert(kind, child).filter(|_| kind != "plugin") {
             report_duplicate(child, Some(first), cx);
@@ -287,7 +288,7 @@ fn read_include(
                 "`placement_frame` is not supported",
                 |d| d.add_help("give the `<include>` a `<pose>`"),
             ),
-            _ => crate::import::element::check_element_name(child, &INCLUDE, cx),
+            _ => crate::import::element::report_misspelt_element_name(child, &INCLUDE, cx),
         }
     }
     let Some(uri) = uri else {
@@ -304,7 +305,7 @@ fn read_include(
 }
 
 /// Returns the byte range of a text node without surrounding whitespace.
-fn trimmed_range(text: Node<'_>) -> Range {
+fn trimmed_range(text: Node<'_>) -> ByteRange {
     let (range, all) = (text.range(), text.text().unwrap_or_default());
     let before = all.len() - all.trim_start().len();
     let after = all.len() - all.trim_end().len();
@@ -321,8 +322,9 @@ fn include_candidates(files: &[LoadedRobotFile], by: usize, uri: &str) -> Vec<(P
     for file in [by, 0] {
         let Some(read) = files.get(file) else { continue };
         for above in ["", ".."] {
-            let sibling_path = |base: &Path| base.with_file_name(above).join(named);
-            let (path, shown) = (sibling_path(&read.path), sibling_path(Path::new(&read.shown)));
+            let candidate_path_beside = |base: &Path| base.with_file_name(above).join(named);
+            let (path, shown) =
+                (candidate_path_beside(&read.path), candidate_path_beside(Path::new(&read.shown)));
             let inside = if path.is_dir() { Some(model_file_name(&path)) } else { None };
             let path_of_model = |base: PathBuf| match &inside {
                 Some(inside) => base.join(inside),

@@ -5,19 +5,20 @@ use super::scope::Scope;
 use super::version::is_before_version;
 use crate::import::context::{Cx, quote_word};
 use crate::import::element::{
-    Node, check_attributes, check_attributes_of_value_element, child_elements, children_with_known_names,
-    element_source_position, nonblank_known_contents, quoted_tag, read_name_attribute, read_numbers_content,
-    read_trimmed_content, required_child,
+    Node, check_attributes_of_value_element, child_elements, child_for_each_name, element_source_position,
+    nonblank_texts_and_own_elements, quoted_tag, read_name_attribute, read_numbers_content,
+    read_trimmed_content, report_missing_or_misspelt_attributes, required_child,
 };
 use crate::import::imported::Located;
 use crate::import::misplaced;
-use crate::import::pose::{FilePose, Vector, length, matrix_times_vector};
+use crate::import::pose::{NumericPose, Vector, matrix_times_vector, vector_norm};
 use crate::import::robot::{
-    FileJoint, FileLimits, FileOrigin, IGNORE_LIMITS, Robot, has_axis, has_coordinate, massless_link,
+    FileJoint, FileLimits, FileOrigin, IGNORE_LIMITS, Robot, has_axis, has_single_coordinate, massless_link,
     origin_from_pose,
 };
 use crate::syntax::{
-    Drive, DriveLaw, DriveTarget, Expr, FileOptions, JointKind, LimitOption, MimicRelation, Name,
+    Expr, FileForceElement, FileForceLaw, FileForceTarget, FileOptions, JointKind, LimitOption,
+    MimicRelation, Name,
 };
 
 /// SDF's names of the joint types, with the number of axes of each.
@@ -71,15 +72,17 @@ pub(super) fn read_joint(
     robot: &mut Robot,
     cx: &mut Cx<'_>,
 ) -> Option<()> {
-    check_attributes(node, &["name", "type"], &[], cx);
+    report_missing_or_misspelt_attributes(node, &["name", "type"], &[], cx);
     let known = ["pose", "parent", "child", "axis", "axis2", "screw_thread_pitch", "thread_pitch"];
-    let [_, parent, child, axis, axis2, lead, old] = children_with_known_names(node, known, cx);
+    let [_, parent, child, axis, axis2, lead, old] = child_for_each_name(node, known, cx);
     required_child(parent, node, "parent", &[], cx)?;
     required_child(child, node, "child", &[], cx)?;
     misplaced::report_misplaced_contents(node, &known, JOINT_HELP, cx);
     [parent, child].into_iter().flatten().for_each(|end| check_attributes_of_value_element(end, &[], cx));
-    for empty in
-        [parent, child].into_iter().flatten().filter(|end| nonblank_known_contents(*end).next().is_none())
+    for empty in [parent, child]
+        .into_iter()
+        .flatten()
+        .filter(|end| nonblank_texts_and_own_elements(*end).next().is_none())
     {
         let message = format!("{} without a name", quoted_tag(empty));
         cx.report_error(&element_source_position(empty, cx), message, |d| {
@@ -96,7 +99,7 @@ pub(super) fn read_joint(
     let (parent, child) = (frames.link_of_frame(&parent, cx)?, frames.link_of_frame(&child, cx)?);
     let (outer, inner) = (frames.resolve_world_pose(&parent, cx)?, frames.resolve_world_pose(&child, cx)?);
     let anchor = inner.inverse_pose().compose_with(&at).at;
-    let base = outer.inverse_pose().compose_with(&FilePose { at: at.at, axes: inner.axes });
+    let base = outer.inverse_pose().compose_with(&NumericPose { at: at.at, axes: inner.axes });
     let number = axes.max(1);
     for (axis, which) in [(axis, "axis"), (axis2, "second axis")].into_iter().skip(axes) {
         // Exporters write an axis into fixed joints.
@@ -116,7 +119,7 @@ pub(super) fn read_joint(
             true => child.clone(),
             false => Name { text: format!("{}_1", joint.text), place: joint.place.clone() },
         };
-        let pose = if k == 0 { base } else { FilePose { at: anchor, ..FilePose::ZERO } };
+        let pose = if k == 0 { base } else { NumericPose { at: anchor, ..NumericPose::ZERO } };
         let said = AxisSource { node, named: &named, axis, word, kind };
         let mut found = said.read_axis_joint((&at, &inner), scope, frames, options, robot, cx)?;
         (found.parent, found.child) = (carrier, carried.clone());
@@ -203,7 +206,7 @@ impl AxisSource<'_> {
     /// Reads the joint of this axis. Parent, child and origin are placeholders, which the caller sets.
     fn read_axis_joint(
         &self,
-        (at, inner): (&FilePose, &FilePose),
+        (at, inner): (&NumericPose, &NumericPose),
         scope: &Scope,
         frames: &Frames,
         options: &FileOptions,
@@ -216,7 +219,7 @@ impl AxisSource<'_> {
             named.clone(),
             named.clone(),
             named.clone(),
-            origin_from_pose(&FilePose::ZERO, &own),
+            origin_from_pose(&NumericPose::ZERO, &own),
         );
         let mut joint = FileJoint { kind, word, ..bare };
         let Some(axis) = self.axis.filter(|_| has_axis(kind)) else {
@@ -228,14 +231,14 @@ impl AxisSource<'_> {
             return Some(joint);
         };
         let parts = ["xyz", "limit", "dynamics", "mimic", "use_parent_model_frame", "initial_position"];
-        let [xyz, limit, dynamics, mimic, old, _] = children_with_known_names(axis, parts, cx);
+        let [xyz, limit, dynamics, mimic, old, _] = child_for_each_name(axis, parts, cx);
         [Some(axis), limit, dynamics]
             .into_iter()
             .flatten()
             .for_each(|node| check_attributes_of_value_element(node, &[], cx));
         misplaced::report_misplaced_contents(axis, &parts, AXIS_HELP, cx);
         let of_model =
-            Name { text: scope.full_name_of_own_frame(), place: element_source_position(axis, cx) };
+            Name { text: scope.full_name_of_scope_frame(), place: element_source_position(axis, cx) };
         let usual = if is_expressed_in_model_axes(axis, old, cx) {
             frames.resolve_world_pose(&of_model, cx)?
         } else {
@@ -248,7 +251,7 @@ impl AxisSource<'_> {
         if let Some(limit) = limit.filter(|_| options.limits != LimitOption::Ignore) {
             joint.limits = read_limits(limit, word == "continuous", cx);
         }
-        if !has_coordinate(kind) && joint.limits.has_limits() {
+        if !has_single_coordinate(kind) && joint.limits.has_limits() {
             robot.left_out.push(format!("limits of {}, which is `{word}`", named.text));
             joint.limits = FileLimits::default();
         }
@@ -279,7 +282,7 @@ fn is_expressed_in_model_axes(axis: Node<'_>, old: Option<Node<'_>>, cx: &mut Cx
 fn read_axis(
     xyz: Option<Node<'_>>,
     axis: Node<'_>,
-    (usual, inner): (&FilePose, &FilePose),
+    (usual, inner): (&NumericPose, &NumericPose),
     scope: &Scope,
     frames: &Frames,
     cx: &mut Cx<'_>,
@@ -288,11 +291,11 @@ fn read_axis(
         Some(xyz) => read_numbers_content::<3>(xyz, cx)?,
         None => Located { value: [0.0, 0.0, 1.0], place: element_source_position(axis, cx) },
     };
-    if length(found.value) < 1e-14 {
+    if vector_norm(found.value) < 1e-14 {
         cx.report_error(&found.place, "axis of zero length has no direction", |d| d);
         return None;
     }
-    xyz.into_iter().for_each(|xyz| check_attributes(xyz, &[], &["expressed_in"], cx));
+    xyz.into_iter().for_each(|xyz| report_missing_or_misspelt_attributes(xyz, &[], &["expressed_in"], cx));
     let said = xyz.and_then(|xyz| xyz.attribute_node("expressed_in"));
     let axes = match said.filter(|said| !said.value().trim().is_empty()) {
         Some(said) => {
@@ -308,11 +311,11 @@ fn read_axis(
 
 fn read_dynamics(node: Node<'_>, joint: &mut FileJoint, robot: &mut Robot, cx: &mut Cx<'_>) {
     let parts = ["damping", "friction", "spring_stiffness", "spring_reference"];
-    let found = children_with_known_names(node, parts, cx);
+    let found = child_for_each_name(node, parts, cx);
     misplaced::report_misplaced_contents(node, &parts, AXIS_HELP, cx);
     let [damping, friction, stiffness, free] =
         found.map(|part| part.and_then(|part| read_numbers_content::<1>(part, cx)));
-    let alone = has_coordinate(joint.kind);
+    let alone = has_single_coordinate(joint.kind);
     for (which, found) in [("damping", &damping), ("friction", &friction), ("spring_stiffness", &stiffness)] {
         let Some(found) = found.as_ref().filter(|found| found.value != [0.0]) else { continue };
         if found.value[0] < 0.0 {
@@ -329,18 +332,20 @@ fn read_dynamics(node: Node<'_>, joint: &mut FileJoint, robot: &mut Robot, cx: &
     };
     (joint.damping, joint.friction) = (nonzero_expression(damping), nonzero_expression(friction));
     if let Some(stiffness) = stiffness.filter(|stiffness| stiffness.value != [0.0]) {
-        let law =
-            DriveLaw::Spring { stiffness: stiffness.value[0], free: free.map_or(0.0, |free| free.value[0]) };
-        robot.drives.push(Drive {
+        let law = FileForceLaw::Spring {
+            stiffness: stiffness.value[0],
+            free: free.map_or(0.0, |free| free.value[0]),
+        };
+        robot.drives.push(FileForceElement {
             name: joint.name.clone(),
-            on: DriveTarget::Sum(vec![(joint.name.clone(), 1.0)]),
+            on: FileForceTarget::Sum(vec![(joint.name.clone(), 1.0)]),
             law,
         });
     }
 }
 
 fn read_limits(node: Node<'_>, continuous: bool, cx: &mut Cx<'_>) -> FileLimits {
-    let found = children_with_known_names(node, ["lower", "upper", "velocity", "effort"], cx);
+    let found = child_for_each_name(node, ["lower", "upper", "velocity", "effort"], cx);
     misplaced::report_misplaced_contents(
         node,
         &["lower", "upper", "velocity", "effort", "stiffness"],
@@ -351,13 +356,13 @@ fn read_limits(node: Node<'_>, continuous: bool, cx: &mut Cx<'_>) -> FileLimits 
         read_trimmed_content(part, cx)
             .is_some_and(|word| word.text.trim_start_matches(['-', '+']).starts_with("inf"))
     };
-    let mut number = |part: Option<Node<'_>>| {
+    let mut read_finite_limit = |part: Option<Node<'_>>| {
         let part = part.filter(|part| !is_infinite_limit(*part, cx))?;
         let found = read_numbers_content::<1>(part, cx)?;
         Some(Located { value: found.value[0], place: found.place })
             .filter(|found| found.value.abs() < ENDLESS)
     };
-    let [lower, upper, velocity, effort] = found.map(&mut number);
+    let [lower, upper, velocity, effort] = found.map(&mut read_finite_limit);
     let limit_unless_continuous = |end: Option<Located<f64>>| end.filter(|_| !continuous);
     // Negative limits mean that there is no limit.
     let nonnegative_limit = |size: Option<Located<f64>>| size.filter(|size| size.value >= 0.0);
@@ -378,13 +383,13 @@ fn read_limits(node: Node<'_>, continuous: bool, cx: &mut Cx<'_>) -> FileLimits 
 
 /// Reads `<mimic>`: `q = multiplier (q_leader − reference) + offset`.
 fn read_mimic(node: Node<'_>, scope: &Scope, cx: &mut Cx<'_>) -> Option<MimicRelation> {
-    check_attributes(node, &["joint"], &["axis"], cx);
+    report_missing_or_misspelt_attributes(node, &["joint"], &["axis"], cx);
     let mut leader = read_name_attribute(node, "joint", cx)?;
     leader.text = match node.attribute("axis") {
         Some("axis2") => format!("{}_2", scope.full_name(&leader.text)),
         _ => scope.full_name(&leader.text),
     };
-    let found = children_with_known_names(node, ["multiplier", "offset", "reference"], cx);
+    let found = child_for_each_name(node, ["multiplier", "offset", "reference"], cx);
     misplaced::report_misplaced_contents(node, &["multiplier", "offset", "reference"], AXIS_HELP, cx);
     let [multiplier, offset, reference] =
         found.map(|part| part.and_then(|part| read_numbers_content::<1>(part, cx)));

@@ -6,11 +6,12 @@ use super::version::is_before_version;
 use crate::diag::Place;
 use crate::import::context::Cx;
 use crate::import::element::{
-    Node, check_attributes, check_attributes_of_value_element, check_element_name, child_elements,
-    children_with_known_names, element_source_position, read_numbers_content, read_trimmed_content,
+    Node, check_attributes_of_value_element, child_elements, child_for_each_name, element_source_position,
+    read_numbers_content, read_trimmed_content, report_missing_or_misspelt_attributes,
+    report_misspelt_element_name,
 };
 use crate::import::misplaced;
-use crate::import::pose::{FilePose, Matrix, rotated_tensor};
+use crate::import::pose::{Matrix, NumericPose, rotated_tensor};
 use crate::import::robot::massless_link;
 use crate::syntax::{Body, Expr, ExprKind, FileOptions, InertiaOption, Name};
 
@@ -35,11 +36,11 @@ pub(super) fn read_link(
     options: &FileOptions,
     cx: &mut Cx<'_>,
 ) -> Option<Body> {
-    check_attributes(node, &["name"], &[], cx);
+    report_missing_or_misspelt_attributes(node, &["name"], &[], cx);
     frames.resolve_world_pose(name, cx)?;
     let mut body = massless_link(name.clone());
     report_unsupported_link_settings(node, options, cx);
-    child_elements(node).for_each(|child| check_element_name(child, &LINK, cx));
+    child_elements(node).for_each(|child| report_misspelt_element_name(child, &LINK, cx));
     misplaced::report_misplaced_contents(
         node,
         &LINK,
@@ -49,14 +50,14 @@ pub(super) fn read_link(
     if options.inertias == InertiaOption::None {
         return Some(body);
     }
-    let [inertial] = children_with_known_names(node, ["inertial"], cx);
+    let [inertial] = child_for_each_name(node, ["inertial"], cx);
     let at = element_source_position(inertial.unwrap_or(node), cx);
     let [pose, mass, inertia, water] = match inertial {
         Some(inertial) => {
             report_automatic_inertia(inertial, &at, cx);
             check_attributes_of_value_element(inertial, &["auto"], cx);
             misplaced::report_misplaced_contents(inertial, &["pose", "mass", "inertia"], PARTS_HELP, cx);
-            children_with_known_names(inertial, ["pose", "mass", "inertia", "fluid_added_mass"], cx)
+            child_for_each_name(inertial, ["pose", "mass", "inertia", "fluid_added_mass"], cx)
         }
         None => [None; 4],
     };
@@ -81,7 +82,7 @@ pub(super) fn read_link(
             }
             pose_in_link(inertial, (name, scope), frames, cx)?
         }
-        _ => FilePose::ZERO,
+        _ => NumericPose::ZERO,
     };
     set_mass_properties(&mut body, mass, &pose, &rotated_tensor(&pose.axes, &read_inertia(inertia, cx)), &at);
     if !body
@@ -123,7 +124,7 @@ fn report_unsupported_link_settings(node: Node<'_>, options: &FileOptions, cx: &
 }
 
 fn report_automatic_inertia(inertial: Node<'_>, at: &Place, cx: &mut Cx<'_>) {
-    check_attributes(inertial, &[], &["auto"], cx);
+    report_missing_or_misspelt_attributes(inertial, &[], &["auto"], cx);
     if inertial.attribute("auto").is_some_and(|auto| matches!(auto, "true" | "1")) {
         let message = "mass properties by collision geometry are not supported";
         cx.report_error(at, message, |d| d.add_help("write `<mass>` and `<inertia>` instead of `auto`"));
@@ -135,7 +136,7 @@ fn read_inertia(inertia: Option<Node<'_>>, cx: &mut Cx<'_>) -> Matrix {
     if let Some(inertia) = inertia {
         check_attributes_of_value_element(inertia, &[], cx);
         misplaced::report_misplaced_contents(inertia, &INERTIA.map(|(entry, _)| entry), PARTS_HELP, cx);
-        let found = children_with_known_names(inertia, INERTIA.map(|(entry, _)| entry), cx);
+        let found = child_for_each_name(inertia, INERTIA.map(|(entry, _)| entry), cx);
         for (to, from) in entries.iter_mut().zip(found) {
             if let Some(found) = from.and_then(|from| read_numbers_content::<1>(from, cx)) {
                 *to = found.value[0];
@@ -147,7 +148,7 @@ fn read_inertia(inertia: Option<Node<'_>>, cx: &mut Cx<'_>) -> Matrix {
 }
 
 /// Sets the mass properties of a body from an SDF link.
-fn set_mass_properties(body: &mut Body, mass: f64, pose: &FilePose, inertia: &Matrix, at: &Place) {
+fn set_mass_properties(body: &mut Body, mass: f64, pose: &NumericPose, inertia: &Matrix, at: &Place) {
     body.mass = Some(Expr::number_at(mass, at));
     body.com = (pose.at != [0.0; 3]).then(|| Expr::vector_at(pose.at, at));
     let entry =

@@ -5,17 +5,18 @@
 
 use super::context::{Cx, quote_word};
 use super::element::{
-    Node, check_attributes, check_element_name, child_elements, element_source_position,
-    nonblank_known_contents, quoted_tag, read_name_attribute, read_numbers_content, read_trimmed_content,
+    Node, child_elements, element_source_position, nonblank_texts_and_own_elements, quoted_tag,
+    read_name_attribute, read_numbers_content, read_trimmed_content, report_missing_or_misspelt_attributes,
+    report_misspelt_element_name,
 };
 use super::misplaced;
-use super::pose::FilePose;
+use super::pose::NumericPose;
 use crate::diag::Diagnostics;
 use crate::import::imported::ImportedMechanism;
 use crate::import::robot::{self, MAX_ELEMENTS, Robot, origin_from_pose};
 use crate::import::whole::import_composed_text;
 use crate::syntax::{Expr, FileFormat, FileOptions, GROUND, JointKind, Name};
-use frames::{Frames, SdfFrame, frame_elements_inside, name_in_owner, read_relative_pose};
+use frames::{Frames, SdfFrame, frame_elements_inside, full_name_in_owner, read_relative_pose};
 use scope::{Scope, WORLD, WorldNames};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -122,7 +123,7 @@ fn read_root_element<'a>(
 ) -> Option<ImportedMechanism> {
     let top = find_models(root_node, cx)?;
     let mut reader = CollectedSdfElements::default();
-    reader.read_top_models(&top, cx)?;
+    reader.collect_top_model_elements(&top, cx)?;
     let mut robot = Robot::default();
     for (node, name, scope) in &reader.links {
         let number = robot.links.len();
@@ -148,9 +149,9 @@ fn read_root_element<'a>(
         reader.add_frame_links(&mut robot, cx);
         robot::separate_loop_closing_joints(&mut robot, cx);
     }
-    robot::check_names(&robot, options.format, cx);
+    robot::check_unique_names(&robot, options.format, cx);
     robot::declare_world_link(&mut robot);
-    robot::rename_ground(&mut robot, options.base);
+    robot::rename_link_named_ground(&mut robot, options.base);
     robot::report_unknown_links(&robot, cx);
     robot::report_wrong_joint_ends(&robot, options.format, cx);
     robot::check_locked_names(&robot.joints, &options.lock, cx);
@@ -168,7 +169,7 @@ fn read_root_element<'a>(
     if reader.frames.known.contains_key(&root.text) {
         robot.root = Some(origin_from_pose(&reader.frames.resolve_world_pose(&root, cx)?, &root.place));
     }
-    robot.gravity = gravity_of_world(top.world.or_else(|| first_child(root_node, "world")), cx);
+    robot.gravity = gravity_of_world(top.world.or_else(|| first_child_with_tag(root_node, "world")), cx);
     robot.left_out.extend(ignored_contents(root_node, options));
     let standing = links_fixed_to_ground(&robot, &root.text, options);
     let closing = std::mem::take(&mut robot.closing);
@@ -263,14 +264,14 @@ fn find_models<'a>(root: Node<'a>, cx: &mut Cx<'_>) -> Option<PrefixedModels<'a>
 }
 
 /// Returns the first child element of an XML element with this name.
-fn first_child<'a>(node: Node<'a>, kind: &str) -> Option<Node<'a>> {
+fn first_child_with_tag<'a>(node: Node<'a>, kind: &str) -> Option<Node<'a>> {
     child_elements(node).find(|child| child.tag_name().name() == kind)
 }
 
 /// Returns whether an SDF model is static, so that its links do not move.
 fn is_static(model: Node<'_>) -> bool {
-    let text = first_child(model, "static")
-        .and_then(|said| nonblank_known_contents(said).find_map(|text| text.text()));
+    let text = first_child_with_tag(model, "static")
+        .and_then(|said| nonblank_texts_and_own_elements(said).find_map(|text| text.text()));
     text.is_some_and(|word| matches!(word.trim(), "true" | "1"))
 }
 
@@ -278,8 +279,8 @@ fn is_static(model: Node<'_>) -> bool {
 /// model without a world.
 fn gravity_of_world(world: Option<Node<'_>>, cx: &mut Cx<'_>) -> Option<Expr> {
     let world = world?;
-    let said = first_child(world, "gravity").or_else(|| {
-        let of_physics = first_child(first_child(world, "physics")?, "gravity")?;
+    let said = first_child_with_tag(world, "gravity").or_else(|| {
+        let of_physics = first_child_with_tag(first_child_with_tag(world, "physics")?, "gravity")?;
         if !version::is_before_version(world, GRAVITY_OF_WORLD) {
             let message = "`<gravity>` is an element of the world since version 1.6 of SDF";
             cx.report_error(&element_source_position(of_physics, cx), message, |d| {
@@ -296,14 +297,14 @@ fn gravity_of_world(world: Option<Node<'_>>, cx: &mut Cx<'_>) -> Option<Expr> {
 
 impl<'a> CollectedSdfElements<'a> {
     /// Collects the links, joints and frames of the models and of their world.
-    fn read_top_models(&mut self, top: &PrefixedModels<'a>, cx: &mut Cx<'_>) -> Option<()> {
+    fn collect_top_model_elements(&mut self, top: &PrefixedModels<'a>, cx: &mut Cx<'_>) -> Option<()> {
         let all = [top.moving.as_slice(), &top.fixed].concat();
         let world = Scope::WorldNames(Rc::new(WorldNames::new(top.world, &all)));
         for (model, prefix) in &top.moving {
-            self.read_models((*model, prefix), &world, false, cx)?;
+            self.collect_model_and_nested_elements((*model, prefix), &world, false, cx)?;
         }
         for (model, prefix) in &top.fixed {
-            self.read_models((*model, prefix), &world, true, cx)?;
+            self.collect_model_and_nested_elements((*model, prefix), &world, true, cx)?;
         }
         if let Some(node) = top.world {
             misplaced::report_misplaced_contents(
@@ -316,7 +317,7 @@ impl<'a> CollectedSdfElements<'a> {
         for child in top.world.into_iter().flat_map(child_elements) {
             match child.tag_name().name() {
                 kind @ ("joint" | "frame") => self.collect_element_of_model(child, kind, &world, false, cx),
-                _ => check_element_name(child, &WORLD_PARTS, cx),
+                _ => report_misspelt_element_name(child, &WORLD_PARTS, cx),
             }
         }
         Some(())
@@ -324,7 +325,7 @@ impl<'a> CollectedSdfElements<'a> {
 
     /// Collects the links, joints and frames of a model and of its nested models. Of a static model only
     /// frames are collected.
-    fn read_models(
+    fn collect_model_and_nested_elements(
         &mut self,
         (top, prefix): (Node<'a>, &str),
         world: &Scope,
@@ -334,7 +335,12 @@ impl<'a> CollectedSdfElements<'a> {
         let mut open = vec![(top, prefix.to_string(), world.clone())];
         while let Some((node, prefix, outer)) = open.pop() {
             let scope = Scope::Model(prefix.clone());
-            check_attributes(node, &["name"], &["canonical_link", "placement_frame"], cx);
+            report_missing_or_misspelt_attributes(
+                node,
+                &["name"],
+                &["canonical_link", "placement_frame"],
+                cx,
+            );
             misplaced::report_misplaced_contents(node, &["link", "joint", "pose"], MODEL_HELP, cx);
             if let Some(frame) =
                 node.attribute_node("placement_frame").filter(|frame| !frame.value().is_empty())
@@ -344,8 +350,8 @@ impl<'a> CollectedSdfElements<'a> {
                     d.add_help("give the model a `<pose>`")
                 });
             }
-            let own = scope.full_name_of_own_frame();
-            let mut frame = read_relative_pose(node, &outer, &outer.full_name_of_own_frame(), cx);
+            let own = scope.full_name_of_scope_frame();
+            let mut frame = read_relative_pose(node, &outer, &outer.full_name_of_scope_frame(), cx);
             frame.attached = match is_fixed {
                 true => Some(Name { text: WORLD.to_string(), place: element_source_position(node, cx) }),
                 false => canonical_link(node, &scope, cx),
@@ -353,7 +359,7 @@ impl<'a> CollectedSdfElements<'a> {
             if !prefix.is_empty() {
                 let short = prefix.trim_end_matches("::").to_string();
                 let base = Name { text: own.clone(), place: element_source_position(node, cx) };
-                let same = SdfFrame { attached: Some(base.clone()), base, pose: FilePose::ZERO };
+                let same = SdfFrame { attached: Some(base.clone()), base, pose: NumericPose::ZERO };
                 self.frames.known.insert(short, same);
             }
             self.frames.known.insert(own.clone(), frame);
@@ -378,7 +384,7 @@ impl<'a> CollectedSdfElements<'a> {
                             |d| d.add_help("remove `<static>`"),
                         );
                     }
-                    _ => check_element_name(child, &MODEL, cx),
+                    _ => report_misspelt_element_name(child, &MODEL, cx),
                 }
             }
             if self.links.len() > MAX_ELEMENTS || self.joints.len() > MAX_ELEMENTS {
@@ -403,19 +409,19 @@ impl<'a> CollectedSdfElements<'a> {
         cx: &mut Cx<'_>,
     ) {
         let Some(mut part) = read_name_attribute(node, "name", cx) else {
-            check_attributes(node, &["name"], &[], cx);
+            report_missing_or_misspelt_attributes(node, &["name"], &[], cx);
             return;
         };
         part.text = scope.full_name_of_declared_element(&part.text);
         let base = match kind {
             // The pose of a joint is relative to its child by default.
             "joint" => joint::frame_name_at_joint_end(node, "child", scope, cx)
-                .map_or(scope.full_name_of_own_frame(), |child| child.text),
+                .map_or(scope.full_name_of_scope_frame(), |child| child.text),
             "frame" => match node.attribute("attached_to").filter(|to| !to.is_empty()) {
                 Some(to) => scope.full_name(to),
-                None => scope.full_name_of_own_frame(),
+                None => scope.full_name_of_scope_frame(),
             },
-            _ => scope.full_name_of_own_frame(),
+            _ => scope.full_name_of_scope_frame(),
         };
         let mut frame = read_relative_pose(node, scope, &base, cx);
         let at = element_source_position(node, cx);
@@ -429,7 +435,7 @@ impl<'a> CollectedSdfElements<'a> {
             frame.attached = Some(name_with_element_span(&part.text));
             self.frames
                 .known
-                .insert(name_in_owner(&part.text, own.attribute("name").unwrap_or_default()), frame);
+                .insert(full_name_in_owner(&part.text, own.attribute("name").unwrap_or_default()), frame);
         }
         if self.frames.known.insert(part.text.clone(), frame).is_some() && kind != "link" {
             let message = format!("second link, joint or frame with the name {}", quote_word(&part.text));
@@ -481,7 +487,7 @@ fn canonical_link(node: Node<'_>, scope: &Scope, cx: &Cx<'_>) -> Option<Name> {
         return Some(Name { text, place: cx.source_position(said.range_value().start) });
     }
     let child_name = |what: &str| {
-        let found = first_child(node, what)?;
+        let found = first_child_with_tag(node, what)?;
         Some(Name {
             text: scope.full_name(found.attribute("name")?),
             place: element_source_position(found, cx),

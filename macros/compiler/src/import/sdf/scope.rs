@@ -29,24 +29,26 @@ pub(super) struct WorldNames {
 impl WorldNames {
     /// Collects the names in the SDF world `node`, if it exists, whose `models` have these prefixes.
     pub(super) fn new(node: Option<Node<'_>>, models: &[(Node<'_>, String)]) -> WorldNames {
-        let name = |node: &Node<'_>| node.attribute("name").map(str::to_string);
+        let name_attribute = |node: &Node<'_>| node.attribute("name").map(str::to_string);
         // Elements of a model without a prefix keep their names; equal names of the world get a prefix
         // instead.
         let bare = models.iter().filter(|(_, prefix)| prefix.is_empty());
-        let taken: BTreeSet<String> =
-            bare.flat_map(|(model, _)| child_elements(*model)).filter_map(|part| name(&part)).collect();
+        let taken: BTreeSet<String> = bare
+            .flat_map(|(model, _)| child_elements(*model))
+            .filter_map(|part| name_attribute(&part))
+            .collect();
         let parts = node.into_iter().flat_map(child_elements);
         let parts = parts.filter(|part| matches!(part.tag_name().name(), "frame" | "joint"));
-        let name_with_full_path = |name: String| match taken.contains(&name) {
+        let name_and_full_name = |name: String| match taken.contains(&name) {
             true => (name.clone(), format!("{WORLD}::{name}")),
             false => (name.clone(), name),
         };
         WorldNames {
             models: models
                 .iter()
-                .filter_map(|(model, prefix)| Some((name(model)?, prefix.clone())))
+                .filter_map(|(model, prefix)| Some((name_attribute(model)?, prefix.clone())))
                 .collect(),
-            parts: parts.filter_map(|part| name(&part)).map(name_with_full_path).collect(),
+            parts: parts.filter_map(|part| name_attribute(&part)).map(name_and_full_name).collect(),
         }
     }
 }
@@ -78,7 +80,7 @@ impl Scope {
     }
 
     /// Returns the full name of the frame of the model, or of the world.
-    pub(super) fn full_name_of_own_frame(&self) -> String {
+    pub(super) fn full_name_of_scope_frame(&self) -> String {
         match self {
             Scope::Model(prefix) => full_model_frame_name(prefix),
             Scope::WorldNames(_) => WORLD.to_string(),

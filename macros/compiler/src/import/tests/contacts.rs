@@ -9,7 +9,9 @@ use std::fmt::Write as _;
 fn import_contacts(contacts: ContactOption, text: &str) -> Result<(Vec<String>, Vec<String>), String> {
     let options = FileOptions { contacts, collisions: true, ..mjcf_options() };
     let mut cx = Diagnostics::new();
-    let Some(imported) = import_text(text, &options, &mut cx) else { return Err(cx.messages().join("\n")) };
+    let Some(imported) = import_text(text, &options, &mut cx) else {
+        return Err(cx.full_message_texts().join("\n"));
+    };
     let contacts = imported.contacts.iter().map(|contact| {
         let mut line = contact.name.text.clone();
         for (_, coefficient) in &contact.arguments.0 {

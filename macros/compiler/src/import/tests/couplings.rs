@@ -177,12 +177,12 @@ fn actuator_defaults_of_a_class_form_one_record() {
              <actuator>{actuator} joint='j'/></actuator></mujoco>"
         );
         let mut cx = Diagnostics::new();
-        let imported =
-            import_text(&text, &mjcf_options(), &mut cx).unwrap_or_else(|| panic!("{:?}", cx.messages()));
+        let imported = import_text(&text, &mjcf_options(), &mut cx)
+            .unwrap_or_else(|| panic!("{:?}", cx.full_message_texts()));
         let laws = imported.drives.iter().map(|drive| match (&drive.on, &drive.law) {
-            (DriveTarget::Sum(terms), DriveLaw::Input(_)) => format!("input {}", terms[0].1),
-            (_, DriveLaw::Spring { stiffness, free }) => format!("spring {stiffness} from {free}"),
-            (_, DriveLaw::Damper(damping)) => format!("damper {damping}"),
+            (FileForceTarget::Sum(terms), FileForceLaw::Input(_)) => format!("input {}", terms[0].1),
+            (_, FileForceLaw::Spring { stiffness, free }) => format!("spring {stiffness} from {free}"),
+            (_, FileForceLaw::Damper(damping)) => format!("damper {damping}"),
             other => panic!("{other:?}"),
         });
         assert_eq!(laws.collect::<Vec<_>>().join(", "), expected, "{defaults} {actuator}");
@@ -286,7 +286,7 @@ fn rotor_inertia_is_scaled_by_the_squared_gear_ratio() {
          j: inerter 0.5 on 3 j
          m: input in N·m on 3 j",
     );
-    check_with_options(
+    check_import_with_options(
         &FileOptions { inputs: FileInputSource::Joints, ..mjcf_options() },
         &format!("<mujoco>\n{model}\n</mujoco>"),
         "the root is the ground
@@ -332,10 +332,12 @@ fn joint_effort_is_the_sum_over_actuators() {
              <tendon><fixed name='t'><joint joint='j' coef='-2'/></fixed></tendon><actuator>{actuators}</actuator></mujoco>"
         );
         let mut cx = Diagnostics::new();
-        let imported =
-            import_text(&text, &mjcf_options(), &mut cx).unwrap_or_else(|| panic!("{:?}", cx.messages()));
-        let effort =
-            imported.limits.iter().find_map(|limit| limit.arguments.get(Key::MaxEffort)?.literal_number());
+        let imported = import_text(&text, &mjcf_options(), &mut cx)
+            .unwrap_or_else(|| panic!("{:?}", cx.full_message_texts()));
+        let effort = imported
+            .limits
+            .iter()
+            .find_map(|limit| limit.arguments.expression_of_key(Key::MaxEffort)?.literal_number());
         assert_eq!(effort, expected, "{joint} {actuators}");
     }
 }

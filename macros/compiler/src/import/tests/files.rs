@@ -11,7 +11,9 @@ fn read_file_or_errors(folder: &Folder, file: &str) -> String {
     let options = FileOptions { path: name_at_call_site(file), ..default_file_options() };
     let text = read_imported_file(&folder.0.join(file), &options, &mut cx);
     assert_eq!(text.is_some(), cx.is_empty());
-    text.unwrap_or_else(|| cx.messages().join("\n").replace(&format!("{}/", folder.0.display()), "…"))
+    text.unwrap_or_else(|| {
+        cx.full_message_texts().join("\n").replace(&format!("{}/", folder.0.display()), "…")
+    })
 }
 
 #[test]
@@ -57,6 +59,6 @@ fn binary_files_are_rejected() {
         let options = FileOptions { path: name_at_call_site("null"), ..default_file_options() };
         let mut cx = Diagnostics::new();
         assert!(read_imported_file("/dev/null".as_ref(), &options, &mut cx).is_none());
-        assert_eq!(cx.messages(), ["`null` is not a regular file"]);
+        assert_eq!(cx.full_message_texts(), ["`null` is not a regular file"]);
     }
 }

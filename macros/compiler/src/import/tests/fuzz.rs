@@ -14,7 +14,7 @@ const FILE: &str = r#"<?xml version="1.0"?>
 </robot>"#;
 
 /// Advances the pseudorandom generator (xorshift64) and returns a number.
-fn next(state: &mut u64) -> usize {
+fn next_random_number(state: &mut u64) -> usize {
     *state ^= *state << 13;
     *state ^= *state >> 7;
     *state ^= *state << 17;
@@ -24,19 +24,19 @@ fn next(state: &mut u64) -> usize {
 /// Changes, removes, copies or inserts random bytes of a file.
 fn damage_bytes(bytes: &mut Vec<u8>, state: &mut u64) {
     const SPICE: &[u8] = b"<>/=\"' &;!-[]?:.0e9-abcjk\x00\xc3\xa4\n";
-    let at = next(state) % bytes.len();
-    let length = (next(state) % 40).min(bytes.len() - at);
-    match next(state) % 5 {
-        0 => bytes[at] = SPICE[next(state) % SPICE.len()],
-        1 => bytes.insert(at, SPICE[next(state) % SPICE.len()]),
+    let at = next_random_number(state) % bytes.len();
+    let length = (next_random_number(state) % 40).min(bytes.len() - at);
+    match next_random_number(state) % 5 {
+        0 => bytes[at] = SPICE[next_random_number(state) % SPICE.len()],
+        1 => bytes.insert(at, SPICE[next_random_number(state) % SPICE.len()]),
         2 if bytes.len() > 100 => drop(bytes.drain(at..at + length)),
         3 => {
             let piece = bytes[at..at + length].to_vec();
-            let to = next(state) % bytes.len();
+            let to = next_random_number(state) % bytes.len();
             bytes.splice(to..to, piece);
         }
         _ => {
-            let other = next(state) % bytes.len();
+            let other = next_random_number(state) % bytes.len();
             bytes.swap(at, other);
         }
     }

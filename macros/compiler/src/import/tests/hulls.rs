@@ -14,10 +14,10 @@ pub(super) fn read_description(
     let folder = Folder::new(test, &[("r.xml", text), ("stone.obj", STONE)]);
     let mut cx = Diagnostics::new();
     let (options, item) = (options.parse().expect("tokens"), item.parse().expect("tokens"));
-    let source = crate::read_source(options, item, &folder.0, &mut cx);
+    let source = crate::parse_source_and_import(options, item, &folder.0, &mut cx);
     match source.filter(|_| cx.is_empty()) {
         Some(source) => Ok(source.mechanism.description),
-        None => Err(cx.messages().join("\n")),
+        None => Err(cx.full_message_texts().join("\n")),
     }
 }
 

@@ -5,7 +5,11 @@ use crate::syntax::file_parameters::FileParameters;
 
 /// Checks the last joints imported from a chain of URDF joints.
 fn check_imported_chain(options: &FileOptions, joints: &[(&str, &str)], expected: &str) {
-    check_with_options(options, &chain_of_links(joints), &(expected_chain_lines(joints.len()) + expected));
+    check_import_with_options(
+        options,
+        &chain_of_links(joints),
+        &(expected_chain_lines(joints.len()) + expected),
+    );
 }
 
 #[test]
@@ -186,7 +190,7 @@ fn locked_joint_becomes_a_weld() {
          Weld j4: l3 -> l4
          left out the coupling of j4, which is locked",
     );
-    check_with_options(
+    check_import_with_options(
         &options_with_locked_joints(&["j", "elbow"]),
         &chain_of_links(&[("revolute", ""), ("revolute", "")]),
         "unknown joint `j` in `lock`
@@ -203,7 +207,7 @@ fn near_round_numbers_are_rounded_on_request_and_reported() {
         ("prismatic", "<origin xyz='0.002 0 0' rpy='1.572 0 0'/><axis xyz='1 0 0.01'/>"),
         ("fixed", "<origin rpy='0 -1.571 0'/>"),
     ]);
-    check_with_options(
+    check_import_with_options(
         &FileOptions { snap: Some(1e-3), ..default_file_options() },
         &robot,
         "body l0\nbody l1\nbody l2\nbody l3
@@ -277,7 +281,7 @@ fn locked_slide_is_displaced_along_its_rotated_axis() {
 #[test]
 fn infinite_joint_offsets_are_rejected() {
     let inside = "<origin xyz='1.7e308 0 0'/><mimic joint='j2' offset='1.7e308'/>";
-    check_with_options(
+    check_import_with_options(
         &options_with_locked_joints(&["j2"]),
         &chain_of_links(&[("prismatic", inside), ("revolute", "")]),
         "r.urdf:3:14: joint `j1` has an infinite position",
@@ -286,7 +290,7 @@ fn infinite_joint_offsets_are_rejected() {
 
 #[test]
 fn joint_without_parent_child_or_type_is_rejected() {
-    check_robot(
+    check_import_of_robot_elements(
         "<link name='a'/>\n<joint/>\n<joint name='j' type='revolut'><parent/><child link=''/></joint>",
         r#"r.urdf:3:1: `<joint>` without `name`, `type`
            = help: expected `<joint name="…" type="…"/>`

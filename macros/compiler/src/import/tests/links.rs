@@ -5,7 +5,10 @@ use super::*;
 const INERTIA: &str = r#"<inertia ixx="1" ixy="2" ixz="3" iyy="4" iyz="5" izz="6"/>"#;
 
 fn check_inertial_message(inside: &str, expected: &str) {
-    check_robot(&format!("<link name=\"a\"><inertial>{inside}</inertial></link>"), expected);
+    check_import_of_robot_elements(
+        &format!("<link name=\"a\"><inertial>{inside}</inertial></link>"),
+        expected,
+    );
 }
 
 #[test]
@@ -59,12 +62,12 @@ fn invalid_mass_is_reported_at_its_source_position() {
 fn inertia_errors_are_ignored_for_kinematics() {
     let options = FileOptions { inertias: InertiaOption::None, ..default_file_options() };
     let text = "<robot><link name='a'><inertial><mass value='x'/></inertial></link></robot>";
-    check_with_options(&options, text, "body a\nWeld root_joint: ground -> a");
+    check_import_with_options(&options, text, "body a\nWeld root_joint: ground -> a");
 }
 
 #[test]
 fn missing_attributes_are_named_in_the_error() {
-    check_with_options(
+    check_import_with_options(
         &FileOptions { base: Base::Free, ..default_file_options() },
         "<robot>\n<link name='a'><inertial></inertial></link></robot>",
         r#"r.urdf:2:16: `<inertial>` without `<mass>`
@@ -83,7 +86,7 @@ fn missing_attributes_are_named_in_the_error() {
 
 #[test]
 fn misspelt_elements_are_rejected() {
-    check_robot(
+    check_import_of_robot_elements(
         "<link name='a'><inertal/><visual/><anything/></link>",
         "r.urdf:2:16: unknown element `<inertal>`
          = help: did you mean `<inertial>`?",
@@ -100,7 +103,7 @@ fn misspelt_elements_are_rejected() {
         "r.urdf:2:34: unknown attribute `xzy` of `<origin>`
          = help: did you mean `xyz`?",
     );
-    check_robot(
+    check_import_of_robot_elements(
         "<Link name='a'/>",
         "r.urdf:2:1: unknown element `<Link>`
          = help: did you mean `<link>`?",
@@ -114,7 +117,7 @@ fn duplicate_elements_are_rejected() {
         "r.urdf:3:1: second `<mass>` of one element
          = help: the first is at r.urdf:2:26",
     );
-    check_robot(
+    check_import_of_robot_elements(
         "<link name='a'><inertial/>\n<inertial/></link>",
         r#"r.urdf:3:1: second `<inertial>` of one element
            = help: the first is at r.urdf:2:16"#,
@@ -205,8 +208,8 @@ fn links_fixed_to_the_ground_need_no_inertia() {
     };
     check_import_with_default_options(&text, &missing_inertia_message(4));
     let free = FileOptions { base: Base::Free, ..default_file_options() };
-    check_with_options(&free, &text, &[2, 3, 4].map(missing_inertia_message).concat());
-    check_with_options(
+    check_import_with_options(&free, &text, &[2, 3, 4].map(missing_inertia_message).concat());
+    check_import_with_options(
         &options_with_locked_joints(&["b"]),
         &text,
         "body base mass=1\nbody arms mass=1\nbody hand mass=1
@@ -252,19 +255,22 @@ fn link_child_elements_written_as_attributes_are_rejected() {
         ("<mass value='1'/>", "r.urdf:2:16: unexpected `<mass>` in `<link>`"),
         ("<joint name='j' type='fixed'/>", "r.urdf:2:16: unexpected `<joint>` in `<link>`"),
     ] {
-        check_robot(&format!("<link name='a'>{inside}</link>"), &format!("{expected}\n{help}"));
+        check_import_of_robot_elements(
+            &format!("<link name='a'>{inside}</link>"),
+            &format!("{expected}\n{help}"),
+        );
     }
-    check_robot(
+    check_import_of_robot_elements(
         "<link name='a' mass='1'/>",
         &format!("r.urdf:2:16: unknown attribute `mass` of `<link>`\n{help}"),
     );
-    check_robot(
+    check_import_of_robot_elements(
         "<link name='a'/><inertial><mass value='1'/></inertial>",
         "r.urdf:2:17: unexpected `<inertial>` in `<robot>`\n= help: expected `<link>` and `<joint>`, which \
          describe all moving parts",
     );
     // Elements of other tools, and an identity pose, are accepted.
-    check_robot(
+    check_import_of_robot_elements(
         "<gazebo reference='a'><inertial/></gazebo><transmission name='t'><joint name='j'/></transmission>\
          <ros2_control name='c'><joint name='j'/></ros2_control><link name='a' type='laser'><origin xyz='0 0 0'/>\
          <contact><inertia_scaling value='1'/></contact><sensor><origin xyz='1 1 1'/></sensor></link>",
@@ -319,7 +325,7 @@ fn second_shape_of_a_geometry_is_rejected() {
             FileFormat::Urdf => format!("<robot name='r'>\n{link}\n</robot>"),
             _ => format!("<sdf><model name='m'>\n{link}\n</model></sdf>"),
         };
-        check_with_options(
+        check_import_with_options(
             &options,
             &text,
             &format!("r.urdf:2:{column}: second shape of one geometry\n{help}"),

@@ -36,7 +36,11 @@ fn options_with_loops(loops: LoopOption) -> FileOptions {
 fn extensions_close_loops() {
     let close = options_with_loops(LoopOption::Close);
     let check_loop_closing_extension = |extension: &str, expected: &str| {
-        check_with_options(&close, &two_pin_chain_with_extension(extension), &format!("{TREE}{expected}"));
+        check_import_with_options(
+            &close,
+            &two_pin_chain_with_extension(extension),
+            &format!("{TREE}{expected}"),
+        );
     };
     check_loop_closing_extension(LOOP_JOINT, "Ball l: a.at([1, 2, 3]) -> c.at([4, 5, 6])");
     // The documentation of Isaac Sim names both links `link1`.
@@ -63,12 +67,12 @@ fn loops_of_extensions_need_the_option() {
         assert!(error.contains(&format!("`{name}` closes a loop")), "{error}");
         assert!(error.contains("loops = close") && error.contains("loops = ignore"), "{error}");
         let ignored = format!("{TREE}left out joint {name}, which closes a loop");
-        check_with_options(&options_with_loops(LoopOption::Ignore), &text, &ignored);
+        check_import_with_options(&options_with_loops(LoopOption::Ignore), &text, &ignored);
     }
     let links = ["a", "b", "c"].map(massless_link).concat();
     let joints = ["ab", "ac", "bc"].map(|name| joint_element(name, "fixed", &name[..1], &name[1..], ""));
     let tree = "body a\nbody b\nbody c\nWeld root_joint: ground -> a\nWeld ab: a -> b\nWeld ac: a -> c\n";
-    check_with_options(
+    check_import_with_options(
         &options_with_loops(LoopOption::Ignore),
         &format!("<robot name='r'>{links}{}</robot>", joints.concat()),
         &format!("{tree}left out joint bc, which closes a loop"),

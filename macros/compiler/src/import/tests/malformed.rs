@@ -119,7 +119,7 @@ fn xacro_template_is_rejected_once() {
         "<robot><xacro:arm/></robot>",
         &format!("r.urdf:1:9: malformed XML: unknown namespace prefix `xacro`\n{help}"),
     );
-    check_robot(
+    check_import_of_robot_elements(
         "<link name='${prefix}a'/><link name='${prefix}b'/>",
         &format!("r.urdf:2:13: `${{prefix}}a` is an expression of xacro\n{help}"),
     );
@@ -152,7 +152,7 @@ fn templates_of_other_formats_are_rejected() {
         ),
     ] {
         let help = format!("= help: expand the file first: `xacro robot.{word}.xacro > robot.{word}`");
-        check_with_options(
+        check_import_with_options(
             &FileOptions { format, ..default_file_options() },
             text,
             &format!("{expected}\n{help}"),

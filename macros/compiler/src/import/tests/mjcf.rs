@@ -13,11 +13,11 @@ pub(super) fn mjcf_options() -> FileOptions {
 
 /// Compares the result of a file with these elements. The elements begin on the second line.
 pub(super) fn check_import_of_mjcf_elements(inside: &str, expected: &str) {
-    check_with_options(&mjcf_options(), &format!("<mujoco>\n{inside}\n</mujoco>"), expected);
+    check_import_with_options(&mjcf_options(), &format!("<mujoco>\n{inside}\n</mujoco>"), expected);
 }
 
 /// Compares the import of an MJCF body that contains these elements with `expected`.
-fn check_mjcf_body(inside: &str, expected: &str) {
+fn check_import_of_mjcf_body(inside: &str, expected: &str) {
     check_import_of_mjcf_elements(
         &format!("<worldbody><body name=\"b\">{inside}</body></worldbody>"),
         expected,
@@ -28,7 +28,7 @@ const BALL: &str = "<geom size='.1' mass='1'/>";
 
 #[test]
 fn joints_of_one_mjcf_body_are_chained() {
-    check_mjcf_body(
+    check_import_of_mjcf_body(
         "<joint name='j' pos='1 0 0'/><joint name='k' type='slide' axis='2 0 0' ref='3'/><geom size='1' mass='5'/>",
         "the root is the ground
          body b_j
@@ -41,7 +41,7 @@ fn joints_of_one_mjcf_body_are_chained() {
 
 #[test]
 fn unnamed_mjcf_elements_get_generated_names() {
-    check_mjcf_body(
+    check_import_of_mjcf_body(
         "<body><joint type='slide'/></body><body name='body2'/>",
         "the root is the ground
          body b
@@ -148,7 +148,7 @@ fn unsupported_mjcf_attributes_are_reported() {
     ] {
         let column = "<worldbody><body name=\"b\">".len() + inside.find(at).expect("it stands there") + 1;
         let help = if help.is_empty() { String::new() } else { format!("\n= help: {help}") };
-        check_mjcf_body(inside, &format!("r.xml:2:{column}: {message}{help}"));
+        check_import_of_mjcf_body(inside, &format!("r.xml:2:{column}: {message}{help}"));
     }
 }
 
@@ -202,19 +202,19 @@ fn non_mjcf_file_names_its_format_in_the_error() {
         ("mujco", "did you mean `mujoco`?"),
     ] {
         let expected = format!("r.xml:1:1: expected `<mujoco>`, found `<{root}>`\n= help: {help}");
-        check_with_options(&mjcf_options(), &format!("<{root}/>"), &expected);
+        check_import_with_options(&mjcf_options(), &format!("<{root}/>"), &expected);
     }
 }
 
 #[test]
 fn free_base_requires_a_body_without_joints() {
     let free = FileOptions { base: Base::Free, ..mjcf_options() };
-    check_with_options(
+    check_import_with_options(
         &free,
         "<mujoco><worldbody><body name='b'/></worldbody></mujoco>",
         "the root is the ground\nbody b\nFree root_joint: ground -> b",
     );
-    check_with_options(
+    check_import_with_options(
         &free,
         "<mujoco><worldbody><body name='b'><joint/></body></worldbody></mujoco>",
         "`base = free` does not fit this file: its outermost body has joints
@@ -307,7 +307,7 @@ fn adversarial_mjcf_files_terminate() {
         import_as_text(&mjcf_options(), entity)
             .contains("an MJCF file has no document type and no entities of its own")
     );
-    check_mjcf_body(
+    check_import_of_mjcf_body(
         "<geom size='1e200' mass='1'/><joint axis='1e300 1e300 0'/>",
         "r.xml:2:24: body `b` is too large, too heavy or too far away for floating-point numbers",
     );
@@ -340,13 +340,13 @@ fn mjcf_planes_become_contacts() {
                 .iter()
                 .map(|contact| {
                     let coefficients: Vec<String> =
-                        contact.arguments.iter().map(|(_, e)| render_expr(e)).collect();
+                        contact.arguments.keyed_expressions().map(|(_, e)| render_expr(e)).collect();
                     let friction = coefficients.join(" ");
                     let (first, second) = (render_expr(&contact.first), render_expr(&contact.second));
                     format!("{}: {first} {second} {friction}\n", contact.name.text)
                 })
                 .collect(),
-            None => cx.messages().join("\n"),
+            None => cx.full_message_texts().join("\n"),
         }
     };
     assert_eq!(
@@ -453,7 +453,7 @@ fn mjcf_option_flags_disable_their_effects() {
 /// `body_ipos`).
 #[test]
 fn mjcf_frames_place_their_contents() {
-    check_mjcf_body(
+    check_import_of_mjcf_body(
         "<frame pos='1 2 3' euler='0 0 90'><joint name='j' pos='1 0 0' axis='1 0 0'/><inertial pos='1 0 0' mass='1' diaginertia='1 2 2.5'/></frame>",
         "the root is the ground
          body b mass=1 com=[1, 3, 3] inertia=[[2, 0, 0], [0, 1, 0], [0, 0, 2.5]]
@@ -465,7 +465,7 @@ fn mjcf_frames_place_their_contents() {
 /// (`site_xmat`).
 #[test]
 fn sites_between_two_points_have_the_axes_of_mujoco() {
-    check_mjcf_body(
+    check_import_of_mjcf_body(
         "<joint name='j'/><site name='s' type='capsule' size='.1' fromto='0 0 0 2 0 0'/>",
         "the root is the ground
          body b

@@ -3,8 +3,8 @@
 use super::{FileOptions, ImportedMechanism, import_file};
 use crate::diag::Diagnostics;
 use crate::syntax::{
-    Base, BinaryOp, Body, ContactOption, Drive, DriveLaw, DriveTarget, Endpoint, Expr, ExprKind, FileFormat,
-    FileInputSource, InertiaOption, Joint, LoopOption, Name,
+    Base, BinaryOp, Body, ContactOption, Endpoint, Expr, ExprKind, FileForceElement, FileForceLaw,
+    FileForceTarget, FileFormat, FileInputSource, InertiaOption, Joint, LoopOption, Name,
 };
 use proc_macro2::Span;
 use std::fs;
@@ -53,7 +53,7 @@ impl Folder {
         let mut cx = Diagnostics::new();
         match import_file(text, &self.0, options, &mut cx) {
             Some(imported) => format!("{}{} files", render_description(&imported), imported.files.len()),
-            None => cx.messages().join("\n"),
+            None => cx.full_message_texts().join("\n"),
         }
     }
 }
@@ -67,7 +67,7 @@ impl Drop for Folder {
 
 /// Returns the default options of a robot file.
 fn default_file_options() -> FileOptions {
-    FileOptions::with_defaults(FileFormat::Urdf, name_at_call_site("r.urdf"))
+    FileOptions::default_options_of_file(FileFormat::Urdf, name_at_call_site("r.urdf"))
 }
 
 fn options_with_locked_joints(joints: &[&str]) -> FileOptions {
@@ -78,7 +78,7 @@ fn options_with_locked_joints(joints: &[&str]) -> FileOptions {
 }
 
 /// Compares the result for `text` with `expected`. Indentation and empty lines are ignored.
-fn check_with_options(options: &FileOptions, text: &str, expected: &str) {
+fn check_import_with_options(options: &FileOptions, text: &str, expected: &str) {
     let trim_lines = |text: &str| -> String {
         let lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
         lines.map(|line| format!("{line}\n")).collect()
@@ -88,11 +88,11 @@ fn check_with_options(options: &FileOptions, text: &str, expected: &str) {
 }
 
 fn check_import_with_default_options(text: &str, expected: &str) {
-    check_with_options(&default_file_options(), text, expected);
+    check_import_with_options(&default_file_options(), text, expected);
 }
 
 /// Compares the result for elements inside `<robot>`. The elements begin on the second line.
-fn check_robot(inside: &str, expected: &str) {
+fn check_import_of_robot_elements(inside: &str, expected: &str) {
     check_import_with_default_options(&format!("<robot name=\"r\">\n{inside}\n</robot>"), expected);
 }
 
@@ -108,7 +108,7 @@ fn import_as_text(options: &FileOptions, text: &str) -> String {
     assert_eq!(imported.is_some(), cx.is_empty(), "nothing is given just when there is a mistake");
     match imported {
         Some(imported) => render_description(&imported),
-        None => cx.messages().join("\n"),
+        None => cx.full_message_texts().join("\n"),
     }
 }
 
@@ -165,35 +165,35 @@ fn render_joint(joint: &Joint) -> String {
     line + if joint.driven { " driven" } else { "" }
 }
 
-fn render_drive(drive: &Drive) -> String {
+fn render_drive(drive: &FileForceElement) -> String {
     let vector_components_text = |vector: [f64; 3]| vector.map(|x| x.to_string()).join(" ");
     let on = match &drive.on {
-        DriveTarget::Sum(terms) => {
+        FileForceTarget::Sum(terms) => {
             let terms: Vec<String> =
                 terms.iter().map(|(joint, weight)| format!("{weight} {}", joint.text)).collect();
             terms.join(" + ")
         }
-        DriveTarget::Length(e) => render_expr(e),
-        DriveTarget::Wrench(wrench) => {
+        FileForceTarget::Length(e) => render_expr(e),
+        FileForceTarget::Wrench(wrench) => {
             let against = wrench.against.iter().map(|e| format!(" against {}", render_expr(e)));
             let [force, torque] = [wrench.force, wrench.torque].map(vector_components_text);
             format!("{} by {force}, {torque}{}", render_expr(&wrench.on), against.collect::<String>())
         }
     };
     let law = match &drive.law {
-        DriveLaw::Spring { stiffness, free } => format!("spring {stiffness} from {free}"),
-        DriveLaw::Slack { stiffness, range: [low, high] } => {
+        FileForceLaw::Spring { stiffness, free } => format!("spring {stiffness} from {free}"),
+        FileForceLaw::Slack { stiffness, range: [low, high] } => {
             let terms: Vec<String> = stiffness.iter().map(f64::to_string).collect();
             let terms = terms.join(", ").replace(", 0, 0", "");
             format!("spring {terms} outside of {low} to {high}")
         }
-        DriveLaw::Damper(damping) => format!("damper {damping}"),
-        DriveLaw::Friction(force) => format!("friction {force}"),
-        DriveLaw::Inerter(inertance) => format!("inerter {inertance}"),
-        DriveLaw::Push(force) => format!("push {force}"),
-        DriveLaw::Input(unit) => format!("input in {unit}"),
-        DriveLaw::PolynomialDamper(terms) => format!("damper {terms:?}"),
-        DriveLaw::Expression { force, .. } => format!("force {}", render_expr(force)),
+        FileForceLaw::Damper(damping) => format!("damper {damping}"),
+        FileForceLaw::Friction(force) => format!("friction {force}"),
+        FileForceLaw::Inerter(inertance) => format!("inerter {inertance}"),
+        FileForceLaw::Push(force) => format!("push {force}"),
+        FileForceLaw::Input(unit) => format!("input in {unit}"),
+        FileForceLaw::PolynomialDamper(terms) => format!("damper {terms:?}"),
+        FileForceLaw::Expression { force, .. } => format!("force {}", render_expr(force)),
     };
     format!("{}: {law} on {on}", drive.name.text)
 }

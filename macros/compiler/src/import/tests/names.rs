@@ -11,7 +11,7 @@ fn joints_are_ordered_depth_first_and_alphabetically() {
         joint_element("first", "revolute", "base", "a", ""),
         joint_element("First", "revolute", "base", "c", ""),
     ];
-    check_robot(
+    check_import_of_robot_elements(
         &(links + &joints.concat()),
         "body base
          body c
@@ -29,13 +29,13 @@ fn joints_are_ordered_depth_first_and_alphabetically() {
 #[test]
 fn root_link_is_fixed_or_free() {
     let free = FileOptions { base: Base::Free, inputs: FileInputSource::Joints, ..default_file_options() };
-    check_with_options(
+    check_import_with_options(
         &free,
         "<robot><link name='any &amp; name'/></robot>",
         "body any & name\nFree root_joint: ground -> any & name",
     );
     let text = joint_element("root_joint", "fixed", "a", "root_joint2", "");
-    check_robot(
+    check_import_of_robot_elements(
         &(massless_link("a") + &massless_link("root_joint2") + &text),
         "body a
          body root_joint2
@@ -63,7 +63,7 @@ fn duplicate_names_are_rejected() {
     let text = [massless_link("a"), massless_link("b"), massless_link("a")].join("\n");
     let joints =
         [joint_element("j", "fixed", "a", "b", ""), joint_element("j", "fixed", "b", "a", "")].join("\n");
-    check_robot(
+    check_import_of_robot_elements(
         &format!("{text}\n{joints}"),
         "r.urdf:4:13: second link with the name `a`
          = help: the first is at r.urdf:2:13
@@ -71,21 +71,21 @@ fn duplicate_names_are_rejected() {
          = help: the first is at r.urdf:5:14",
     );
     let links = [massless_link("a"), massless_link("ground")].join("\n");
-    check_robot(
+    check_import_of_robot_elements(
         &format!("{links}\n{}", joint_element("j", "fixed", "a", "ground", "")),
         "body a
          body ground_link
          Weld root_joint: ground -> a
          Weld j: a -> ground_link",
     );
-    check_robot(
+    check_import_of_robot_elements(
         &format!("{links}\n{}", massless_link("ground")),
         "r.urdf:4:13: second link with the name `ground`
          = help: the first is at r.urdf:3:13",
     );
     let free = FileOptions { base: Base::Free, inputs: FileInputSource::Joints, ..default_file_options() };
     let both = [massless_link("ground"), massless_link("ground_link")].concat();
-    check_with_options(
+    check_import_with_options(
         &free,
         &format!("<robot>{both}{}</robot>", joint_element("j", "fixed", "ground", "ground_link", "")),
         "body ground_link2
@@ -94,11 +94,11 @@ fn duplicate_names_are_rejected() {
          Weld j: ground_link2 -> ground_link",
     );
     // A fixed root of this name is the ground.
-    check_robot(
+    check_import_of_robot_elements(
         &format!("{links}\n{}", joint_element("j", "fixed", "ground", "a", "")),
         "the root is the ground\nbody a\nWeld j: ground -> a",
     );
-    check_robot(
+    check_import_of_robot_elements(
         "<link name=' '/><link/><link nmae='a'/>",
         r#"r.urdf:2:13: empty `name` of `<link>`
            = help: write a name: `name="…"`
@@ -114,7 +114,7 @@ fn joints_to_missing_links_are_rejected() {
     let joints =
         [joint_element("j", "fixed", "base", "arms", ""), joint_element("k", "fixed", "arm", "arm", "")]
             .join("\n");
-    check_robot(
+    check_import_of_robot_elements(
         &format!("{}{}\n{joints}", massless_link("base"), massless_link("arm")),
         "r.urdf:3:64: unknown link `arms`
          = help: did you mean `arm`?
@@ -133,7 +133,7 @@ fn link_named_world_needs_no_declaration() {
     let joints =
         [joint_element("j", "fixed", "world", "a", ""), joint_element("k", "fixed", "world", "b", "")]
             .concat();
-    check_robot(
+    check_import_of_robot_elements(
         &(links.clone() + &joints),
         "body world
          body a
@@ -142,7 +142,7 @@ fn link_named_world_needs_no_declaration() {
          Weld j: world -> a
          Weld k: world -> b",
     );
-    check_robot(
+    check_import_of_robot_elements(
         &format!("{links}\n{}", joint_element("j", "fixed", "a", "world", "")),
         "r.urdf:3:61: unknown link `world`
          = help: expected `a` or `b`",
@@ -157,7 +157,7 @@ fn link_with_two_parent_joints_is_rejected() {
         joint_element("ac", "fixed", "a", "c", ""),
         joint_element("bc", "fixed", "b", "c", ""),
     ];
-    check_robot(
+    check_import_of_robot_elements(
         &format!("{links}\n{}", joints.join("\n")),
         "r.urdf:5:62: link `c` is the child of two joints, `ac` and `bc`
          = help: the first is at r.urdf:4:62
@@ -179,9 +179,9 @@ fn second_parent_joint_closes_a_loop() {
     let expected_tree =
         |joints: &str| format!("body a\nbody b\nbody c\nWeld root_joint: ground -> a\n{joints}");
     let last = expected_tree("Weld ab: a -> b\nWeld ac: a -> c\nPin cb: c -> b about [1, 0, 0]");
-    check_with_options(&options, &robot_with_joints(&[ab.clone(), ac, cb.clone()]), &last);
+    check_import_with_options(&options, &robot_with_joints(&[ab.clone(), ac, cb.clone()]), &last);
     let first = expected_tree("Weld ab: a -> b\nFree bc: b -> c\nPin cb: c -> b about [1, 0, 0]");
-    check_with_options(&options, &robot_with_joints(&[cb.clone(), ab, bc.clone()]), &first);
+    check_import_with_options(&options, &robot_with_joints(&[cb.clone(), ab, bc.clone()]), &first);
     let without_root = import_as_text(&options, &robot_with_joints(&[bc, cb]));
     assert!(without_root.contains("links `b`, `c` form a cycle"), "{without_root}");
 }
@@ -189,13 +189,13 @@ fn second_parent_joint_closes_a_loop() {
 #[test]
 fn several_root_links_are_rejected() {
     let links = ["a", "b", "c", "d"].map(massless_link).join("\n");
-    check_robot(
+    check_import_of_robot_elements(
         &(links.clone() + &joint_element("j", "fixed", "a", "b", "")),
         "r.urdf:4:13: expected one link that is not the child of a joint, found `a`, `c`, `d`
          = help: every link but one needs a joint that has it as its child",
     );
     let many: String = (0..20).map(|k| massless_link(&format!("l{k}"))).collect();
-    check_robot(
+    check_import_of_robot_elements(
         &many,
         "r.urdf:2:30: expected one link that is not the child of a joint, found `l0`, `l1`, `l2`, `l3`, `l4`, `l5`, `l6`, `l7`, …
          = help: every link but one needs a joint that has it as its child",
@@ -213,10 +213,10 @@ fn circular_parent_links_are_rejected() {
     let circle = format!("{links}\n{}", joints.join("\n"));
     let expected = "r.urdf:3:45: links `a`, `b`, `c` form a cycle
                     = help: joint `ba` closes the cycle; a tree has a root";
-    check_robot(&circle, expected);
+    check_import_of_robot_elements(&circle, expected);
     let tail =
         massless_link("root") + &massless_link("tail") + &joint_element("at", "fixed", "a", "tail", "");
-    check_robot(&(circle + &tail), expected);
+    check_import_of_robot_elements(&(circle + &tail), expected);
 }
 
 #[test]
@@ -231,7 +231,7 @@ fn long_chains_of_links_fit_the_stack() {
 fn too_many_links_are_rejected() {
     let crowd: String = (0..2000).map(|k| massless_link(&format!("l{k}"))).collect();
     let column = 1 + (0..1024).map(|k| massless_link(&format!("l{k}")).len()).sum::<usize>();
-    check_robot(&crowd, &format!("r.urdf:2:{column}: more than 1024 elements `<link>`"));
+    check_import_of_robot_elements(&crowd, &format!("r.urdf:2:{column}: more than 1024 elements `<link>`"));
     let crowd = "<joint/>".repeat(2000);
     let messages = import_as_text(&default_file_options(), &format!("<robot>{crowd}</robot>"));
     assert_eq!(messages.matches("r.urdf:1:").count(), 32);

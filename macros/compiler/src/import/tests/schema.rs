@@ -44,13 +44,13 @@ fn import_mjcf_as_text(text: &str) -> String {
     let mut cx = Diagnostics::new();
     match import_text(text, &mjcf_options(), &mut cx) {
         Some(imported) => format!("{imported:?}"),
-        None => cx.messages().join("\n"),
+        None => cx.full_message_texts().join("\n"),
     }
 }
 
 /// Returns the results of a file with and without an attribute. Spaces replace the attribute, so that source
 /// positions are equal.
-fn results_with_and_without(file: &str, attribute: &str, value: &str) -> [String; 2] {
+fn results_with_and_without_attribute(file: &str, attribute: &str, value: &str) -> [String; 2] {
     let said = format!("{attribute}=\"{value}\"");
     let file = file.replace('$', CLASS).replace('#', BODIES);
     [said.clone(), " ".repeat(said.len())]
@@ -75,7 +75,7 @@ fn attributes_that_affect_motion_are_read_or_rejected() {
         let list = LISTS.iter().find(|(name, _)| *name == line).map_or(line, |(_, list)| list);
         for (attribute, value) in list.split("; ").filter_map(|one| one.split_once('=')) {
             known.insert(attribute);
-            let [with, without] = results_with_and_without(file, attribute, value);
+            let [with, without] = results_with_and_without_attribute(file, attribute, value);
             if with == without || with.contains("unknown attribute") {
                 silent.push(format!("{element} {attribute}=\"{value}\""));
             }

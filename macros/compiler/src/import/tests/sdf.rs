@@ -7,13 +7,17 @@ fn sdf_options() -> FileOptions {
 }
 
 /// Compares the result for the elements of a model. The elements begin on the second line.
-fn check_sdf_model(inside: &str, expected: &str) {
-    check_with_options(&sdf_options(), &format!("<sdf><model name='m'>\n{inside}\n</model></sdf>"), expected);
+fn check_import_of_sdf_model(inside: &str, expected: &str) {
+    check_import_with_options(
+        &sdf_options(),
+        &format!("<sdf><model name='m'>\n{inside}\n</model></sdf>"),
+        expected,
+    );
 }
 
 #[test]
 fn omitted_sdf_values_have_the_defaults_of_the_format() {
-    check_sdf_model(
+    check_import_of_sdf_model(
         "<link name='a'/><link name='b'><pose>0 0 2 0 0 0</pose></link><joint name='j' type='revolute'>\
          <parent>a</parent><child>b</child><axis/></joint>",
         "body a mass=1 inertia=[[1, 0, 0], [0, 1, 0], [0, 0, 1]]
@@ -25,7 +29,7 @@ fn omitted_sdf_values_have_the_defaults_of_the_format() {
 
 #[test]
 fn sdf_frames_place_joints_and_joints_close_loops() {
-    check_sdf_model(
+    check_import_of_sdf_model(
         "<link name='a'/><frame name='f' attached_to='a'><pose>1 0 0 0 0 0</pose></frame><link name='b'/>\
          <link name='c'/><joint name='i' type='fixed'><parent>f</parent><child>b</child></joint>\
          <joint name='j' type='ball'><parent>a</parent><child>c</child></joint>\
@@ -47,7 +51,7 @@ fn sdf_frames_place_joints_and_joints_close_loops() {
 
 #[test]
 fn static_models_of_the_world_are_listed() {
-    check_with_options(
+    check_import_with_options(
         &sdf_options(),
         "<sdf><world name='w'><gravity>0 0 -1</gravity><model name='f'><static>1</static><link name='f'/>\
          </model><model name='m'><link name='a'/></model></world></sdf>",
@@ -166,7 +170,7 @@ fn unsupported_sdf_elements_are_reported() {
              `#[mechanism(…, limits = ignore)]`",
         ),
     ] {
-        check_sdf_model(&inside, expected);
+        check_import_of_sdf_model(&inside, expected);
     }
 }
 
@@ -194,7 +198,7 @@ fn non_sdf_file_names_its_format_in_the_error() {
              joints of their world connect: put the others into files of their own",
         ),
     ] {
-        check_with_options(&sdf_options(), text, expected);
+        check_import_with_options(&sdf_options(), text, expected);
     }
 }
 
@@ -315,9 +319,9 @@ fn old_sdf_joint_axes_are_in_the_model_frame() {
             "body a {ONE}\nbody b {ONE}\nWeld root_joint: ground -> a\nSleeve j: \
              a.rotated(z(1.5707963267948966)) -> b along {along}"
         );
-        check_with_options(&sdf_options(), &model_with_axis(version, axis), &expected);
+        check_import_with_options(&sdf_options(), &model_with_axis(version, axis), &expected);
     }
-    check_with_options(
+    check_import_with_options(
         &sdf_options(),
         &model_with_axis("1.7", &of_model),
         "r.sdf:1:204: `<use_parent_model_frame>` has another name since version 1.7 of SDF\n= help: write \
@@ -372,22 +376,22 @@ fn old_sdf_poses_name_their_frame_in_an_attribute() {
     for version in ["1.5", "1.6"] {
         let model_with_inertial_pose = |inertial: &str| model_with_poses(version, placed, inertial);
         let expected_model_with_com = |com: &str| expected_model("[0, 0, 1]", com);
-        check_with_options(
+        check_import_with_options(
             &sdf_options(),
             &model_with_inertial_pose("<pose>1 0 0 0 0 0</pose>"),
             &expected_model_with_com("[1, 0, 0]"),
         );
-        check_with_options(
+        check_import_with_options(
             &sdf_options(),
             &model_with_inertial_pose("<pose frame='a'>1 0 0 0 0 0</pose>"),
             &expected_model_with_com("[1, 0, -1]"),
         );
-        check_with_options(
+        check_import_with_options(
             &sdf_options(),
             &model_with_inertial_pose("<pose frame='f'>1 0 0 0 0 0</pose>"),
             &expected_model_with_com("[1, 3, 0]"),
         );
-        check_with_options(
+        check_import_with_options(
             &sdf_options(),
             &model_with_inertial_pose("<pose frame=''>1 0 0 0 0 0</pose>"),
             &expected_model_with_com("[1, 0, 0]"),
@@ -520,7 +524,11 @@ fn sdf_version_must_be_a_number() {
              > converted.sdf`",
         ),
     ] {
-        check_with_options(&sdf_options(), &format!("<sdf version='{version}'>{model}</sdf>"), expected);
+        check_import_with_options(
+            &sdf_options(),
+            &format!("<sdf version='{version}'>{model}</sdf>"),
+            expected,
+        );
     }
     let answer = import_as_text(&sdf_options(), &format!("<gazebo version='1.2'>{model}</gazebo>"));
     assert!(answer.contains("files of versions 1.0 and 1.2 begin so"), "{answer}");
@@ -567,7 +575,7 @@ fn old_sdf_gravity_is_read_from_physics() {
 /// Numbers and words next to comments are read, or an error where a comment divides them.
 #[test]
 fn xml_comments_do_not_hide_values() {
-    check_sdf_model(
+    check_import_of_sdf_model(
         "<link name='a'><pose><!-- m, rad -->0 0 3 0 0 0</pose><inertial><mass><!-- kg -->2</mass></inertial>\
          </link><link name='b'/><joint name='j' type='ball'><parent><!-- link --> a</parent><child>b</child>\
          </joint>",
@@ -582,7 +590,7 @@ fn xml_comments_do_not_hide_values() {
         ("<pose>0 0 3 0 0 0<offset/></pose>", "r.sdf:2:33: unexpected `<offset>` in `<pose>`"),
         ("<inertial><mass>1<!-- -->0</mass></inertial>", "r.sdf:2:41: unexpected text `0` in `<mass>`"),
     ] {
-        check_sdf_model(&format!("<link name='a'>{inside}</link>"), &format!("{found}\n{help}"));
+        check_import_of_sdf_model(&format!("<link name='a'>{inside}</link>"), &format!("{found}\n{help}"));
     }
 }
 
@@ -609,7 +617,7 @@ fn misplaced_sdf_elements_are_rejected() {
             "= help: the first is at r.sdf:2:16",
         ),
     ] {
-        check_sdf_model(inside, &format!("{found}\n{help}"));
+        check_import_of_sdf_model(inside, &format!("{found}\n{help}"));
     }
     let model_with_joint = |inside: &str| {
         format!(
@@ -637,7 +645,7 @@ fn misplaced_sdf_elements_are_rejected() {
 /// A joint that closes a loop is not lost because an end has no name.
 #[test]
 fn loop_joints_with_unnamed_links_are_rejected() {
-    check_sdf_model(
+    check_import_of_sdf_model(
         "<link name='a'/><link name='b'/><joint name='i' type='ball'><parent>a</parent><child>b</child>\
          </joint><joint name='j' type='ball'><parent/><child>b</child></joint>",
         "r.sdf:2:131: `<parent>` without a name
@@ -647,7 +655,7 @@ fn loop_joints_with_unnamed_links_are_rejected() {
 
 #[test]
 fn unsupported_sdf_joint_elements_are_listed() {
-    check_sdf_model(
+    check_import_of_sdf_model(
         "<link name='a'/><link name='b'/><link name='c'/><joint name='i' type='screw'><parent>a</parent>\
          <child>b</child><screw_thread_pitch>1</screw_thread_pitch><axis><limit><lower>-1</lower>\
          <upper>2</upper></limit></axis></joint><joint name='j' type='ball'><parent>b</parent>\

@@ -21,7 +21,7 @@ fn check_degrees_error(options: &FileOptions, text: &str, place: &str, help: &st
         std::f64::consts::FRAC_PI_2,
         SAME_TURN,
     );
-    check_with_options(options, &degrees, &said);
+    check_import_with_options(options, &degrees, &said);
     for turn in ["6.2832", "-6.283185307179586", "6.3", "9.42477796076938"] {
         let answer = import_as_text(options, &text.replace('…', turn));
         assert!(!answer.contains("full turn"), "{answer}");

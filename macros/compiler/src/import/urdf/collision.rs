@@ -4,8 +4,8 @@ use super::origin::read_origin;
 use crate::diag::Place;
 use crate::import::context::Cx;
 use crate::import::element::{
-    Node, check_attributes, child_elements, children_with_known_names, element_source_position,
-    read_name_attribute, read_number_attribute, read_numbers_attribute, required_child,
+    Node, child_elements, child_for_each_name, element_source_position, read_name_attribute,
+    read_number_attribute, read_numbers_attribute, report_missing_or_misspelt_attributes, required_child,
 };
 use crate::import::imported::Located;
 use crate::import::mesh;
@@ -23,19 +23,19 @@ pub(super) fn read_collisions(link: Node<'_>, folder: &Path, cx: &mut Cx<'_>) ->
 }
 
 fn read_collision(node: Node<'_>, folder: &Path, cx: &mut Cx<'_>) -> Option<FileCollisionShape> {
-    let [origin, geometry] = children_with_known_names(node, ["origin", "geometry"], cx);
+    let [origin, geometry] = child_for_each_name(node, ["origin", "geometry"], cx);
     let origin = read_origin(origin, node, cx);
     let geometry = required_child(geometry, node, "geometry", &[], cx)?;
-    let [sphere, cuboid, cylinder, capsule, mesh] = children_with_known_names(geometry, SHAPES, cx);
+    let [sphere, cuboid, cylinder, capsule, mesh] = child_for_each_name(geometry, SHAPES, cx);
     report_additional_shapes(&[sphere, cuboid, cylinder, capsule, mesh], cx);
     let mut vertices = None;
     let shape = match (sphere, cuboid, cylinder, capsule, mesh) {
         (Some(sphere), ..) => {
-            check_attributes(sphere, &["radius"], &[], cx);
+            report_missing_or_misspelt_attributes(sphere, &["radius"], &[], cx);
             Shape::Sphere(read_positive_length(sphere, "radius", cx)?)
         }
         (_, Some(cuboid), ..) => {
-            check_attributes(cuboid, &["size"], &[], cx);
+            report_missing_or_misspelt_attributes(cuboid, &["size"], &[], cx);
             let size: Located<[f64; 3]> = read_numbers_attribute(cuboid, "size", cx)?;
             for x in size.value {
                 require_positive_length(x, &size.place, cx)?;
@@ -43,7 +43,7 @@ fn read_collision(node: Node<'_>, folder: &Path, cx: &mut Cx<'_>) -> Option<File
             Shape::Cuboid(size.value)
         }
         (_, _, Some(round), ..) | (_, _, _, Some(round), _) => {
-            check_attributes(round, &["radius", "length"], &[], cx);
+            report_missing_or_misspelt_attributes(round, &["radius", "length"], &[], cx);
             let (radius, length) =
                 (read_positive_length(round, "radius", cx), read_positive_length(round, "length", cx));
             if cylinder.is_some() {
@@ -53,14 +53,14 @@ fn read_collision(node: Node<'_>, folder: &Path, cx: &mut Cx<'_>) -> Option<File
             }
         }
         (.., Some(mesh)) => {
-            check_attributes(mesh, &["filename"], &["scale"], cx);
+            report_missing_or_misspelt_attributes(mesh, &["filename"], &["scale"], cx);
             let path = read_name_attribute(mesh, "filename", cx)?;
             let scale = match mesh.has_attribute("scale") {
                 true => read_numbers_attribute(mesh, "scale", cx)?.value,
                 false => [1.0; 3],
             };
             let paths = mesh::candidate_paths(folder, &path.text);
-            vertices = Some(MeshVertices::scaled(path, paths, scale));
+            vertices = Some(MeshVertices::scaled_vertices_of_file(path, paths, scale));
             Shape::Mesh
         }
         _ => {

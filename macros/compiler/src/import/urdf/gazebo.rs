@@ -4,11 +4,11 @@
 use super::loops::joint_between;
 use crate::import::context::{Cx, quote_word};
 use crate::import::element::{
-    Node, check_attributes, children_with_known_names, element_source_position, read_name_attribute,
-    read_numbers_content, read_trimmed_content, required_child,
+    Node, child_for_each_name, element_source_position, read_name_attribute, read_numbers_content,
+    read_trimmed_content, report_missing_or_misspelt_attributes, required_child,
 };
 use crate::import::imported::Located;
-use crate::import::pose::{FilePose, Vector, length, matrix_times_vector};
+use crate::import::pose::{NumericPose, Vector, matrix_times_vector, vector_norm};
 use crate::import::robot::{FileJoint, FileOrigin, Robot, has_axis};
 use crate::syntax::{Expr, FileOptions, JointKind, Name};
 use std::collections::BTreeMap;
@@ -30,7 +30,7 @@ pub(super) fn read_gazebo_joint(
     robot: &mut Robot,
     cx: &mut Cx<'_>,
 ) -> Option<FileJoint> {
-    check_attributes(node, &["name", "type"], &[], cx);
+    report_missing_or_misspelt_attributes(node, &["name", "type"], &[], cx);
     let name = read_name_attribute(node, "name", cx);
     let written = node.attribute_node("type")?;
     let Some((word, kind)) = SDF_TYPES.into_iter().find(|(word, _)| *word == written.value()) else {
@@ -42,8 +42,7 @@ pub(super) fn read_gazebo_joint(
         });
         return None;
     };
-    let [pose, parent, child, axis] =
-        children_with_known_names(node, ["pose", "parent", "child", "axis"], cx);
+    let [pose, parent, child, axis] = child_for_each_name(node, ["pose", "parent", "child", "axis"], cx);
     let parent = read_trimmed_content(required_child(parent, node, "parent", &[], cx)?, cx)?;
     let child = read_trimmed_content(required_child(child, node, "child", &[], cx)?, cx)?;
     let on_child = read_pose(pose, cx)?;
@@ -60,7 +59,7 @@ pub(super) fn read_gazebo_joint(
         }
         None => (GazeboAxis::placeholder_axis(&name), false),
     };
-    let placements = placements_at_zero(robot);
+    let placements = link_poses_at_zero_coordinates(robot);
     let (Some(outer), Some(inner)) = (placements.get(&parent.text), placements.get(&child.text)) else {
         let unknown = if placements.contains_key(&parent.text) { &child } else { &parent };
         let links = robot.links.iter().map(|link| link.name.text.as_str());
@@ -102,12 +101,12 @@ fn read_gazebo_axis(
     cx: &mut Cx<'_>,
 ) -> Option<(GazeboAxis, bool)> {
     let [xyz, limit, dynamics, old] =
-        children_with_known_names(node, ["xyz", "limit", "dynamics", "use_parent_model_frame"], cx);
+        child_for_each_name(node, ["xyz", "limit", "dynamics", "use_parent_model_frame"], cx);
     let direction = match xyz {
         Some(xyz) => read_numbers_content::<3>(xyz, cx)?,
         None => GazeboAxis::placeholder_axis(name).direction,
     };
-    if length(direction.value) < 1e-14 {
+    if vector_norm(direction.value) < 1e-14 {
         cx.report_error(&direction.place, "axis of zero length has no direction", |d| d);
         return None;
     }
@@ -120,18 +119,18 @@ fn read_gazebo_axis(
     let is_true_word = |word: Name| matches!(word.text.to_ascii_lowercase().as_str(), "true" | "1");
     let is_expressed_in_model_axes = expressed_in == "__model__"
         || old.and_then(|old| read_trimmed_content(old, cx)).is_some_and(is_true_word);
-    let has_bound = |limit: Node<'_>| {
+    let has_finite_bound = |limit: Node<'_>| {
         let bounds = limit.children().filter(|child| matches!(child.tag_name().name(), "lower" | "upper"));
         bounds
             .filter_map(|bound| bound.text())
             .any(|text| text.trim().parse().is_ok_and(|x: f64| x.abs() < 1e15))
     };
-    if limit.is_some_and(has_bound) {
+    if limit.is_some_and(has_finite_bound) {
         robot.left_out.push(format!("limits of {}, which closes a loop", name.text));
     }
     let mut damping = None;
     if let Some(dynamics) = dynamics.filter(|_| options.honour_passive) {
-        let found = children_with_known_names(dynamics, ["damping", "friction", "spring_stiffness"], cx);
+        let found = child_for_each_name(dynamics, ["damping", "friction", "spring_stiffness"], cx);
         for value in found.into_iter().flatten().filter_map(|part| read_numbers_content::<1>(part, cx)) {
             if value.value != [0.0] {
                 damping = Some(Expr::number_at(value.value[0], &value.place));
@@ -142,8 +141,8 @@ fn read_gazebo_axis(
 }
 
 /// Reads a pose relative to the child link; the default is the identity.
-fn read_pose(node: Option<Node<'_>>, cx: &mut Cx<'_>) -> Option<FilePose> {
-    let Some(node) = node else { return Some(FilePose::ZERO) };
+fn read_pose(node: Option<Node<'_>>, cx: &mut Cx<'_>) -> Option<NumericPose> {
+    let Some(node) = node else { return Some(NumericPose::ZERO) };
     let frame = node.attribute("relative_to").or(node.attribute("frame")).map_or("", str::trim);
     if !frame.is_empty() {
         let message = format!("a pose relative to {} is not supported", quote_word(frame));
@@ -165,7 +164,7 @@ fn read_pose(node: Option<Node<'_>>, cx: &mut Cx<'_>) -> Option<FilePose> {
 }
 
 /// Returns the poses of the links relative to their root, with all coordinates zero.
-fn placements_at_zero(robot: &Robot) -> BTreeMap<String, FilePose> {
+fn link_poses_at_zero_coordinates(robot: &Robot) -> BTreeMap<String, NumericPose> {
     let mut below: BTreeMap<&str, Vec<&FileJoint>> = BTreeMap::new();
     let mut roots: BTreeMap<&str, ()> =
         robot.links.iter().map(|link| (link.name.text.as_str(), ())).collect();
@@ -178,7 +177,8 @@ fn placements_at_zero(robot: &Robot) -> BTreeMap<String, FilePose> {
         roots.remove(joint.child.text.as_str());
     }
     let mut placed = BTreeMap::new();
-    let mut stack: Vec<(&str, FilePose)> = roots.into_keys().map(|root| (root, FilePose::ZERO)).collect();
+    let mut stack: Vec<(&str, NumericPose)> =
+        roots.into_keys().map(|root| (root, NumericPose::ZERO)).collect();
     while let Some((link, pose)) = stack.pop() {
         if placed.contains_key(link) {
             continue;

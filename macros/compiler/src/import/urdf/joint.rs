@@ -5,12 +5,13 @@ use super::origin::read_origin;
 use crate::diag::Place;
 use crate::import::context::{Cx, quote_word};
 use crate::import::element::{
-    Node, check_attributes, children_with_known_names, element_source_position, read_name_attribute,
-    read_number_attribute, read_numbers_attribute, report_unexpected_contents, required_child,
+    Node, child_for_each_name, element_source_position, read_name_attribute, read_number_attribute,
+    read_numbers_attribute, report_missing_or_misspelt_attributes, report_unexpected_contents,
+    required_child,
 };
 use crate::import::imported::Located;
 use crate::import::misplaced;
-use crate::import::robot::{FileJoint, has_axis, has_coordinate};
+use crate::import::robot::{FileJoint, has_axis, has_single_coordinate};
 use crate::syntax::{Expr, FileOptions, JointKind, LimitOption, MimicRelation, Name};
 
 /// URDF's names of the joint types, and `spherical`, which simulators also accept.
@@ -41,10 +42,10 @@ pub(super) fn read_joint(
     left_out: &mut Vec<String>,
     cx: &mut Cx<'_>,
 ) -> Option<FileJoint> {
-    check_attributes(node, &["name", "type"], &[], cx);
+    report_missing_or_misspelt_attributes(node, &["name", "type"], &[], cx);
     let joint = read_name_attribute(node, "name", cx);
     let kind = read_joint_type(node, cx);
-    let [origin, parent, child, axis, dynamics, mimic, limit] = children_with_known_names(node, PARTS, cx);
+    let [origin, parent, child, axis, dynamics, mimic, limit] = child_for_each_name(node, PARTS, cx);
     misplaced::report_misplaced_contents(node, &PARTS, ELEMENTS, cx);
     let origin = read_origin(origin, node, cx);
     let parent = read_end_link(parent, node, "parent", cx);
@@ -62,10 +63,10 @@ pub(super) fn read_joint(
     }
     let mimic = mimic.filter(|_| moves);
     let limit = limit.filter(|_| moves && options.limits != LimitOption::Ignore);
-    if let (Some(joint), Some(_), false) = (&joint, limit, has_coordinate(kind)) {
+    if let (Some(joint), Some(_), false) = (&joint, limit, has_single_coordinate(kind)) {
         left_out.push(format!("limits of {}, which is `{word}`", joint.text));
     }
-    let limit = limit.filter(|_| has_coordinate(kind));
+    let limit = limit.filter(|_| has_single_coordinate(kind));
     let limits = read_limits(limit, joint.as_ref(), word == "continuous", cx);
     let (name, parent, child) = (joint?, parent?, child?);
     Some(FileJoint {
@@ -73,7 +74,7 @@ pub(super) fn read_joint(
         limits,
         damping,
         friction,
-        ..FileJoint::from_links(name, (kind, word), [parent, child], origin, axis)
+        ..FileJoint::joint_between_links(name, (kind, word), [parent, child], origin, axis)
     })
 }
 

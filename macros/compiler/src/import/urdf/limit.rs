@@ -33,8 +33,9 @@ pub(super) fn read_limits(
     let Some(node) = node else { return FileLimits::default() };
     report_unexpected_contents(node, &[], &BOUNDS, &OF_OTHERS, cx);
     let ends = !continuous && ["lower", "upper"].iter().any(|which| node.has_attribute(*which));
-    let mut end = |which: &str, infinite: &str| ends.then(|| read_bound(node, which, infinite, cx)).flatten();
-    let (lower, upper) = (end("lower", "-inf"), end("upper", "inf"));
+    let mut read_coordinate_bound =
+        |which: &str, infinite: &str| ends.then(|| read_bound(node, which, infinite, cx)).flatten();
+    let (lower, upper) = (read_coordinate_bound("lower", "-inf"), read_coordinate_bound("upper", "inf"));
     let name = joint.map_or_else(String::new, |name| format!(" of joint {}", quote_word(&name.text)));
     if let (Some(low), Some(high)) = (&lower, &upper)
         && low.value > high.value
@@ -44,7 +45,7 @@ pub(super) fn read_limits(
             d.add_help("without one of the two it is 0").add_help(IGNORE_LIMITS)
         });
     }
-    let mut size = |which: &str| {
+    let mut read_nonnegative_limit = |which: &str| {
         let found = node.has_attribute(which).then(|| read_bound(node, which, "inf", cx)).flatten()?;
         if found.value < 0.0 {
             let message = format!("negative `{which}`{name}: {}", found.value);
@@ -52,7 +53,7 @@ pub(super) fn read_limits(
         }
         Some(found)
     };
-    let (velocity, effort) = (size("velocity"), size("effort"));
+    let (velocity, effort) = (read_nonnegative_limit("velocity"), read_nonnegative_limit("effort"));
     FileLimits { lower, upper, velocity, effort }
 }
 

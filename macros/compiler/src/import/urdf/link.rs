@@ -4,8 +4,8 @@ use super::origin::read_origin;
 use crate::diag::nearest_candidate;
 use crate::import::context::Cx;
 use crate::import::element::{
-    Node, check_attributes, child_elements, children_with_known_names, element_source_position, quoted_tag,
-    read_name_attribute, read_number_attribute, report_unexpected_contents, required_child,
+    Node, child_elements, child_for_each_name, element_source_position, quoted_tag, read_name_attribute,
+    read_number_attribute, report_missing_or_misspelt_attributes, report_unexpected_contents, required_child,
 };
 use crate::import::misplaced;
 use crate::import::robot::{FileOrigin, massless_link};
@@ -33,7 +33,7 @@ pub(super) fn read_link(
     options: &FileOptions,
     cx: &mut Cx<'_>,
 ) -> Option<Body> {
-    check_attributes(node, &["name"], &[], cx);
+    report_missing_or_misspelt_attributes(node, &["name"], &[], cx);
     misplaced::report_misplaced_contents(
         node,
         &["inertial"],
@@ -43,7 +43,7 @@ pub(super) fn read_link(
     let name = read_name_attribute(node, "name", cx);
     let [inertial] = match options.inertias {
         InertiaOption::None => [None],
-        _ => children_with_known_names(node, ["inertial"], cx),
+        _ => child_for_each_name(node, ["inertial"], cx),
     };
     let stands = name.as_ref().is_some_and(|name| stands(&name.text));
     let mut body = massless_link(name?);
@@ -55,14 +55,17 @@ pub(super) fn read_link(
 
 /// Reads mass, centre of mass and inertia. If all values are zero, the body has no mass properties.
 fn read_inertial(node: Node<'_>, stands: bool, body: &mut Body, cx: &mut Cx<'_>) {
-    let [origin, mass, inertia] = children_with_known_names(node, PARTS, cx);
+    let [origin, mass, inertia] = child_for_each_name(node, PARTS, cx);
     report_unknown_inertial_contents(node, cx);
     let origin = read_origin(origin, node, cx);
-    let mut found = |child, element, attributes: &[&str]| match stands {
+    let mut require_child_unless_grounded = |child, element, attributes: &[&str]| match stands {
         true => child,
         false => required_child(child, node, element, attributes, cx),
     };
-    let (mass, inertia) = (found(mass, "mass", &["value"]), found(inertia, "inertia", &INERTIA));
+    let (mass, inertia) = (
+        require_child_unless_grounded(mass, "mass", &["value"]),
+        require_child_unless_grounded(inertia, "inertia", &INERTIA),
+    );
     if let Some(mass) = mass {
         report_unexpected_contents(mass, &["value"], &[], &[], cx);
         body.mass = read_number_attribute(mass, "value", cx).map(|m| Expr::number_at(m.value, &m.place));

@@ -12,11 +12,12 @@ use super::joint::{read_axis, read_joint_type};
 use crate::diag::Place;
 use crate::import::context::{Cx, quote_word};
 use crate::import::element::{
-    Node, check_attributes, child_elements, children_with_known_names, element_source_position,
-    read_name_attribute, read_numbers_attribute, report_unexpected_contents, required_child,
+    Node, child_elements, child_for_each_name, element_source_position, read_name_attribute,
+    read_numbers_attribute, report_missing_or_misspelt_attributes, report_unexpected_contents,
+    required_child,
 };
 use crate::import::imported::Located;
-use crate::import::pose::{FilePose, Vector, matrix_times_vector};
+use crate::import::pose::{NumericPose, Vector, matrix_times_vector};
 use crate::import::robot::{FileJoint, FileOrigin, Robot, has_axis, origin_from_pose, unused_name};
 use crate::syntax::{FileOptions, JointKind, LoopOption, Name};
 
@@ -32,11 +33,11 @@ pub(super) fn read_declared_loops(root: Node<'_>, options: &FileOptions, robot: 
     for node in root.children().filter(Node::is_element) {
         let (name, is_own) = (node.tag_name().name(), node.tag_name().namespace() == own);
         match name {
-            LOOP_JOINT if is_own => add_joint(read_loop_joint(node, cx), robot),
+            LOOP_JOINT if is_own => add_loop_closing_joint(read_loop_joint(node, cx), robot),
             "gazebo" if is_own && !node.has_attribute("reference") => {
                 for joint in child_elements(node).filter(|child| child.tag_name().name() == "joint") {
                     let found = read_gazebo_joint(joint, options, robot, cx);
-                    add_joint(found, robot);
+                    add_loop_closing_joint(found, robot);
                 }
             }
             "mujoco" if is_own => {
@@ -47,7 +48,7 @@ pub(super) fn read_declared_loops(root: Node<'_>, options: &FileOptions, robot: 
             }
             "ball_constraint" if !is_own => {
                 let found = read_ball_constraint(node, robot, cx);
-                add_joint(found, robot);
+                add_loop_closing_joint(found, robot);
             }
             // Joints of Drake have a type; other tools use the name for other things.
             "joint" if !is_own && !node.has_attribute("type") => {}
@@ -59,7 +60,7 @@ pub(super) fn read_declared_loops(root: Node<'_>, options: &FileOptions, robot: 
     }
 }
 
-fn add_joint(joint: Option<FileJoint>, robot: &mut Robot) {
+fn add_loop_closing_joint(joint: Option<FileJoint>, robot: &mut Robot) {
     if let Some(joint) = joint {
         robot.declared_closing.insert(joint.name.text.clone());
         robot.joints.push(joint);
@@ -94,27 +95,27 @@ fn report_or_list_ignored_element(
 pub(super) fn joint_between(
     name: Name,
     (kind, word): (JointKind, &'static str),
-    (parent, on_parent): (Name, FilePose),
-    (child, on_child): (Name, FilePose),
+    (parent, on_parent): (Name, NumericPose),
+    (child, on_child): (Name, NumericPose),
     axis: &Located<Vector>,
 ) -> FileJoint {
     // The child's axes if the frames coincide; the joint is where its frame is.
     let axes = on_parent.compose_with(&on_child.inverse_pose()).axes;
     let place: Place = name.place.clone();
-    let origin = origin_from_pose(&FilePose { at: on_parent.at, axes }, &place);
+    let origin = origin_from_pose(&NumericPose { at: on_parent.at, axes }, &place);
     let in_child = matrix_times_vector(&on_child.axes, axis.value);
     let axis =
         Located { value: in_child.map(|x| if x.abs() < 1e-15 { 0.0 } else { x }), place: axis.place.clone() };
     FileJoint {
         anchor: on_child.at,
-        ..FileJoint::from_links(name, (kind, word), [parent, child], origin, axis)
+        ..FileJoint::joint_between_links(name, (kind, word), [parent, child], origin, axis)
     }
 }
 
 /// Reads `<loop_joint>`. The second link is `<link2>`, or a second `<link1>` as in the documentation of Isaac
 /// Sim.
 fn read_loop_joint(node: Node<'_>, cx: &mut Cx<'_>) -> Option<FileJoint> {
-    check_attributes(node, &["name", "type"], &[], cx);
+    report_missing_or_misspelt_attributes(node, &["name", "type"], &[], cx);
     let name = read_name_attribute(node, "name", cx);
     let (word, kind) = read_joint_type(node, cx)?;
     if matches!(kind, JointKind::Free | JointKind::Planar) {
@@ -130,16 +131,16 @@ fn read_loop_joint(node: Node<'_>, cx: &mut Cx<'_>) -> Option<FileJoint> {
     let second = required_child(ends.next(), node, "link2", &attributes, cx)?;
     let axis = child_elements(node).find(|child| child.tag_name().name() == "axis");
     let axis = read_axis(axis.filter(|_| has_axis(kind)), node, cx);
-    let mut end = |end: Node<'_>| {
+    let mut read_joint_end = |end: Node<'_>| {
         report_unexpected_contents(end, &["link"], &["xyz", "rpy"], &[], cx);
         let link = read_name_attribute(end, "link", cx)?;
-        let zero = || Located { value: [0.0; 3], place: element_source_position(end, cx) };
-        let (xyz, rpy) = (zero(), zero());
+        let zero_vector_at_end = || Located { value: [0.0; 3], place: element_source_position(end, cx) };
+        let (xyz, rpy) = (zero_vector_at_end(), zero_vector_at_end());
         let xyz = read_numbers_attribute(end, "xyz", cx).unwrap_or(xyz);
         let rpy = read_numbers_attribute(end, "rpy", cx).unwrap_or(rpy);
         Some((link, FileOrigin { xyz, rpy }.pose()))
     };
-    let (parent, child) = (end(first)?, end(second)?);
+    let (parent, child) = (read_joint_end(first)?, read_joint_end(second)?);
     Some(joint_between(name?, (kind, word), parent, child, &axis))
 }
 
@@ -147,7 +148,7 @@ fn read_loop_joint(node: Node<'_>, cx: &mut Cx<'_>) -> Option<FileJoint> {
 fn read_ball_constraint(node: Node<'_>, robot: &Robot, cx: &mut Cx<'_>) -> Option<FileJoint> {
     let parts = ["body_A", "body_B", "p_AP", "p_BQ"].map(|part| format!("ball_constraint_{part}"));
     let parts = parts.each_ref().map(String::as_str);
-    let found = children_with_known_names(node, parts, cx);
+    let found = child_for_each_name(node, parts, cx);
     let mut missing = parts.iter().zip(found).filter(|(_, part)| part.is_none());
     if let Some((part, _)) = missing.next() {
         let message = format!("`<drake:ball_constraint>` without `<drake:{part}>`");
@@ -159,17 +160,18 @@ fn read_ball_constraint(node: Node<'_>, robot: &Robot, cx: &mut Cx<'_>) -> Optio
         |part: Option<Node<'_>>, cx: &mut Cx<'_>| read_name_attribute(part?, "name", cx);
     let pose_of_point_element = |part: Option<Node<'_>>, cx: &mut Cx<'_>| {
         let part = part?;
-        check_attributes(part, &["value"], &[], cx);
-        read_numbers_attribute::<3>(part, "value", cx).map(|at| FilePose { at: at.value, ..FilePose::ZERO })
+        report_missing_or_misspelt_attributes(part, &["value"], &[], cx);
+        read_numbers_attribute::<3>(part, "value", cx)
+            .map(|at| NumericPose { at: at.value, ..NumericPose::ZERO })
     };
     for link in [a, b].into_iter().flatten() {
-        check_attributes(link, &["name"], &[], cx);
+        report_missing_or_misspelt_attributes(link, &["name"], &[], cx);
     }
     let (parent, child) = (link_name_of_element(a, cx), link_name_of_element(b, cx));
     let (on_parent, on_child) = (pose_of_point_element(p, cx), pose_of_point_element(q, cx));
-    let is_taken = |name: &str| robot.joints.iter().any(|joint| joint.name.text == name);
+    let is_joint_name_taken = |name: &str| robot.joints.iter().any(|joint| joint.name.text == name);
     let place = element_source_position(node, cx);
-    let name = Name { text: unused_name("ball_constraint", is_taken), place: place.clone() };
+    let name = Name { text: unused_name("ball_constraint", is_joint_name_taken), place: place.clone() };
     let axis = Located { value: [1.0, 0.0, 0.0], place };
     let kind = (JointKind::Ball, "spherical");
     Some(joint_between(name, kind, (parent?, on_parent?), (child?, on_child?), &axis))

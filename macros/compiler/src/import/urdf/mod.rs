@@ -5,7 +5,9 @@
 //! missing joint creates roots and cycles that are not in the file.
 
 use super::context::Cx;
-use super::element::{Node, check_element_name, child_elements, element_source_position, quoted_tag};
+use super::element::{
+    Node, child_elements, element_source_position, quoted_tag, report_misspelt_element_name,
+};
 use super::misplaced;
 use crate::import::imported::ImportedMechanism;
 use crate::import::robot::{self, MAX_ELEMENTS, Robot};
@@ -33,9 +35,9 @@ pub(super) fn read_root_element(
         return None;
     }
     let mut robot = read_robot(node, folder, options, cx)?;
-    robot::check_names(&robot, options.format, cx);
+    robot::check_unique_names(&robot, options.format, cx);
     robot::declare_world_link(&mut robot);
-    robot::rename_ground(&mut robot, options.base);
+    robot::rename_link_named_ground(&mut robot, options.base);
     if !cx.has_errors() {
         robot::report_unknown_links(&robot, cx);
         match options.loops {
@@ -96,7 +98,7 @@ fn read_robot(node: Node<'_>, folder: &Path, options: &FileOptions, cx: &mut Cx<
             "joint" => 1,
             loops::LOOP_JOINT => continue,
             _ => {
-                check_element_name(child, &["link", "joint"], cx);
+                report_misspelt_element_name(child, &["link", "joint"], cx);
                 continue;
             }
         };

@@ -1,9 +1,9 @@
 //! Force elements: springs, dashpots, inerters, friction, gravity, forces and torques.
 
-use super::super::Words;
+use super::super::WordsWithMeanings;
 use super::keys::{ArgumentRelation, Key};
 use super::words::{AT, NO_INERTANCE, ON, SATURATION};
-use crate::mechanism::PieceKind;
+use crate::mechanism::PieceShape;
 use Key::{
     About, Along, Constant, Coulomb, FreeAngle, FreeLength, Mu, Stiction, Strength, StribeckSpeed, Value,
     Viscous,
@@ -38,11 +38,11 @@ pub struct ForceRow {
     /// Whether the element applies a force at a single point of a body.
     pub at_point: bool,
     /// Pieces of the drawing: for a length, and for an angle.
-    pub pieces: Option<[PieceKind; 2]>,
+    pub pieces: Option<[PieceShape; 2]>,
     /// Whether the element is drawn only between two points.
     pub drawn_between: bool,
     /// Names that other tools use for the arguments of the element.
-    pub words: Words,
+    pub words: WordsWithMeanings,
     /// Example of a declaration of the force element.
     pub example: &'static str,
 }
@@ -96,7 +96,7 @@ table! {
                 "`free_length` applies to translations, `free_angle` to rotations",
             )],
             locals: ForceLawVariables::Stretch,
-            pieces: Some([PieceKind::Coil, PieceKind::Spiral]),
+            pieces: Some([PieceShape::Coil, PieceShape::Spiral]),
             words: &[
                 (ON, "on"),
                 ("points ends connects", "between"),
@@ -121,7 +121,7 @@ table! {
             laws: &[Key::Force, Key::Damping],
             required: &[(Key::Damping, "c")],
             locals: ForceLawVariables::Speed,
-            pieces: Some([PieceKind::Damper, PieceKind::Brake]),
+            pieces: Some([PieceShape::Damper, PieceShape::Brake]),
             words: &[
                 (ON, "on"),
                 ("points ends connects", "between"),
@@ -189,7 +189,7 @@ table! {
             synonyms: "thruster thrust load push pull wind",
             arguments: &[Along, Value],
             on_bodies: true,
-            pieces: Some([PieceKind::Bar, PieceKind::Bar]),
+            pieces: Some([PieceShape::Bar, PieceShape::Bar]),
             drawn_between: true,
             words: &[
                 (ON, "on"),
@@ -225,7 +225,7 @@ table! {
 }
 
 /// Names of other tools for the arguments of gravity and of attraction.
-const ATTRACTING: Words = &[
+const ATTRACTING: WordsWithMeanings = &[
     ("g constantg gravitationalconstant gamma", "constant"),
     ("gm standardgravitationalparameter parameter", "mu"),
     ("k constant charge", "strength"),

@@ -1,8 +1,8 @@
 //! Table of the joints: names, axes, coordinates and examples.
 
-use super::super::Words;
+use super::super::WordsWithMeanings;
 use super::words::{END, LIMITED, RATIO, TURNED};
-use crate::mechanism::PieceKind;
+use crate::mechanism::PieceShape;
 use JointTypeCoordinates::Plain;
 
 /// Row of the table of joints.
@@ -17,7 +17,7 @@ pub struct JointRow {
     /// Names of the joint's coordinates, and whether they are angles.
     pub coordinates: JointTypeCoordinates,
     /// Piece of the drawing, and the argument whose first axis the piece shows.
-    pub piece: Option<(PieceKind, Option<DrawnAxis>)>,
+    pub piece: Option<(PieceShape, Option<DrawnAxis>)>,
     /// Example of a declaration of the joint.
     pub example: &'static str,
 }
@@ -44,9 +44,9 @@ pub enum DrawnAxis {
     Along,
 }
 
-const HINGE: Option<(PieceKind, Option<DrawnAxis>)> = Some((PieceKind::Hinge, Some(DrawnAxis::About)));
-const SLIDE: Option<(PieceKind, Option<DrawnAxis>)> = Some((PieceKind::Slide, Some(DrawnAxis::Along)));
-const BALL: Option<(PieceKind, Option<DrawnAxis>)> = Some((PieceKind::Ball, None));
+const HINGE: Option<(PieceShape, Option<DrawnAxis>)> = Some((PieceShape::Hinge, Some(DrawnAxis::About)));
+const SLIDE: Option<(PieceShape, Option<DrawnAxis>)> = Some((PieceShape::Slide, Some(DrawnAxis::Along)));
+const BALL: Option<(PieceShape, Option<DrawnAxis>)> = Some((PieceShape::Ball, None));
 
 const ANGLE: JointTypeCoordinates = Plain(&[("", true)]);
 const LENGTH: JointTypeCoordinates = Plain(&[("", false)]);
@@ -61,7 +61,7 @@ const fn joint_row(
     synonyms: &'static str,
     arguments: &'static [&'static str],
     coordinates: JointTypeCoordinates,
-    piece: Option<(PieceKind, Option<DrawnAxis>)>,
+    piece: Option<(PieceShape, Option<DrawnAxis>)>,
     example: &'static str,
 ) -> JointRow {
     JointRow { name, synonyms, arguments, coordinates, piece, example }
@@ -115,7 +115,7 @@ table! {
 impl JointKind {
     /// Returns the plain coordinates of a joint with `along` translation axes: names (empty for the name of
     /// the joint), and true for an angle.
-    fn plain_coordinate_names(self, along: usize) -> Option<&'static [(&'static str, bool)]> {
+    fn plain_coordinates_with_angle_flags(self, along: usize) -> Option<&'static [(&'static str, bool)]> {
         match self.row().coordinates {
             Plain(all) => Some(all),
             JointTypeCoordinates::PerAxis(all) => all.get(..along.clamp(2, all.len())),
@@ -124,8 +124,8 @@ impl JointKind {
     }
 
     /// Returns the names of the entries of `q` and `v`; an empty name is that of the joint.
-    pub fn coordinate_names(self, along: usize) -> (Vec<&'static str>, Vec<&'static str>) {
-        if let Some(plain) = self.plain_coordinate_names(along) {
+    pub fn configuration_and_velocity_names(self, along: usize) -> (Vec<&'static str>, Vec<&'static str>) {
+        if let Some(plain) = self.plain_coordinates_with_angle_flags(along) {
             let names: Vec<&str> = plain.iter().map(|(name, _)| *name).collect();
             return (names.clone(), names);
         }
@@ -139,7 +139,7 @@ impl JointKind {
 
     /// Returns true for a joint that only rotates about one axis, false for a joint that only translates
     /// along one axis, and `None` for others.
-    pub fn rotates_about_one_axis(self) -> Option<bool> {
+    pub fn single_axis_joint_is_rotational(self) -> Option<bool> {
         match (self.row().coordinates, self.row().arguments) {
             (Plain([("", true)]), ["about"]) => Some(true),
             (Plain([("", false)]), ["along"]) => Some(false),
@@ -155,7 +155,7 @@ impl JointKind {
 
     /// True if a plain coordinate is an angle, false if it is a length.
     pub fn is_angle(self, coordinate: &str) -> bool {
-        let plain = self.plain_coordinate_names(usize::MAX).unwrap_or_default();
+        let plain = self.plain_coordinates_with_angle_flags(usize::MAX).unwrap_or_default();
         plain.iter().any(|(name, angle)| *name == coordinate && *angle)
     }
 
@@ -166,7 +166,7 @@ impl JointKind {
 }
 
 /// Words of other tools for the arguments of a joint; `NAME` is its name.
-pub const JOINT_WORDS: Words = &[
+pub const JOINT_WORDS: WordsWithMeanings = &[
     ("axis axes direction dir rotationaxis hingeaxis normal", "about"),
     ("axis axes direction dir slideaxis", "along"),
     ("origin pos position at anchor offset xyz point translation location", END),

@@ -12,7 +12,7 @@ pub use joints::{DrawnAxis, JointKind, JointTypeCoordinates};
 pub use keys::{ArgumentQuantity, ArgumentRelation, Key};
 pub use others::OtherKind;
 
-use super::Words;
+use super::WordsWithMeanings;
 use joints::JOINT_WORDS;
 use words::{ENDS, MATRIX, PLACED};
 
@@ -35,13 +35,13 @@ const BODY: &str = "Body";
 const PARTICLE: &str = "Particle";
 
 /// Names of other tools for the types of bodies and particles.
-const MASSIVE: Words = &[
+const MASSIVE: WordsWithMeanings = &[
     ("link rigidbody body3d part segment solid linkage inertial multibody", BODY),
     ("pointmass masspoint bob bead", PARTICLE),
 ];
 
 /// Names of other tools for the arguments of a body.
-const BODY_WORDS: Words = &[
+const BODY_WORDS: WordsWithMeanings = &[
     ("m weight masse", "mass"),
     ("cog cm cg centre center centerofmass centreofmass massoffset cofm comoffset", "com"),
     ("i j ic icm moi momentofinertia inertiatensor inertiamatrix geometry shape solid", "inertia"),
@@ -59,7 +59,7 @@ const BODY_WORDS: Words = &[
 ];
 
 /// Names of other tools for the arguments of a particle.
-const PARTICLE_WORDS: Words = &[
+const PARTICLE_WORDS: WordsWithMeanings = &[
     ("m weight", "mass"),
     ("position pos xyz r where point location place", "at"),
     ("on body parent", "the body is written before the vector: `at = body.at(length * x)`"),
@@ -122,7 +122,7 @@ impl ElementKind {
     }
 
     /// Returns the names of other tools for the arguments of an element.
-    pub fn argument_synonyms(self) -> Words {
+    pub fn argument_synonyms(self) -> WordsWithMeanings {
         match self {
             ElementKind::Body => BODY_WORDS,
             ElementKind::Particle => PARTICLE_WORDS,

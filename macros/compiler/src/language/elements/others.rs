@@ -1,6 +1,6 @@
 //! Elements other than bodies, joints and force elements.
 
-use super::super::Words;
+use super::super::WordsWithMeanings;
 use super::keys::{ArgumentRelation, Key};
 use super::words::ON;
 use Key::{
@@ -26,16 +26,16 @@ pub struct OtherElementRow {
     /// Conditions on which arguments may or must occur together.
     pub relations: &'static [ArgumentRelation],
     /// Names of the element's arguments in other tools.
-    pub words: Words,
+    pub words: WordsWithMeanings,
     /// Example of a declaration of the element.
     pub example: &'static str,
 }
 
-const fn row(
+const fn element_row(
     name: &'static str,
     synonyms: &'static str,
     attributes: &'static [&'static str],
-    words: Words,
+    words: WordsWithMeanings,
     example: &'static str,
 ) -> OtherElementRow {
     OtherElementRow {
@@ -55,19 +55,19 @@ table! {
     /// An element other than a body, a joint or a force element.
     OtherKind: OtherElementRow {
         /// Element type `Coordinate`: a generalized coordinate that belongs to no joint.
-        Coordinate = row("Coordinate",
+        Coordinate = element_row("Coordinate",
             "symbol symbols dynamicsymbol dynamicsymbols generalizedcoordinate generalisedcoordinate \
              variable dof unknown",
             &[], &[], "name: Coordinate");
         /// Element type `Input`: an entry of `u`.
-        Input = row("Input", "control signal command controlinput inputs", &[], &[], "name: Input");
+        Input = element_row("Input", "control signal command controlinput inputs", &[], &[], "name: Input");
         /// Element type `Frame`: a named frame.
-        Frame = row("Frame", "referenceframe axes coordinatesystem csys basis",
+        Frame = element_row("Frame", "referenceframe axes coordinatesystem csys basis",
             &["frame"], &[], "#[frame(ground, z(angle))]");
         /// Element type `Point`: a named point of a body.
         Point = OtherElementRow {
             own: &["on", "at"],
-            ..row("Point", "site marker location position landmark waypoint",
+            ..element_row("Point", "site marker location position landmark waypoint",
             &["point"], POINT, "#[point(on = body, at = length * x)]")
         };
         /// Element type `Limit`: limits of a coordinate.
@@ -80,28 +80,29 @@ table! {
                 "a restitution needs a bound",
                 "add `from = …`, `to = …`, or both",
             )],
-            ..row("Limit", "limits range bounds jointlimit jointlimits",
+            ..element_row("Limit", "limits range bounds jointlimit jointlimits",
             &["limit"], LIMIT, "#[limit(on = joint, from = a, to = b)]")
         };
         /// Element type `Potential`: a potential energy.
-        Potential = row("Potential", "potentialenergy energy", &["energy"], &[], "#[energy(expression)]");
+        Potential = element_row("Potential", "potentialenergy energy", &["energy"], &[],
+            "#[energy(expression)]");
         /// Element type `Rayleigh`: a Rayleigh dissipation function.
-        Rayleigh = row("Rayleigh", "dissipation dissipationfunction rayleighdissipation",
+        Rayleigh = element_row("Rayleigh", "dissipation dissipationfunction rayleighdissipation",
             &["dissipation"], &[], "#[dissipation(expression)]");
         /// Element type `Holonomic`: a constraint on the configuration.
-        Holonomic = row("Holonomic", "holonomicconstraint equation loop closure distance",
+        Holonomic = element_row("Holonomic", "holonomicconstraint equation loop closure distance",
             &["constraint"], &[], "#[constraint(norm(r(tip / base)) = length)]");
         /// Element type `Nonholonomic`: a constraint on the velocity.
-        Nonholonomic = row("Nonholonomic", "nonholonomicconstraint skate noslip",
+        Nonholonomic = element_row("Nonholonomic", "nonholonomicconstraint skate noslip",
             &["constraint"], &[], "#[constraint(dot(v(skate / ground / ground), sled.y) = 0)]");
         /// Element type `Rolling`: two surfaces that roll on each other.
-        Rolling = row("Rolling", "",
+        Rolling = element_row("Rolling", "",
             &["constraint"], ROLLING, "#[constraint(rolls(disk.circle(radius, y), ground.plane(z)))]");
         /// Element type `Slipping`: two surfaces that slip on each other, with friction.
         Slipping = OtherElementRow {
             arguments: &[Friction, Speed],
             required: &[(Friction, "mu")],
-            ..row("Slipping",
+            ..element_row("Slipping",
             "",
             &["constraint"], &[], "#[constraint(slips(disk.circle(radius, y), ground.plane(z)), friction = mu)]")
         };
@@ -119,45 +120,45 @@ table! {
                 Speed,
             ],
             relations: COMPLIANCE,
-            ..row("Contact",
+            ..element_row("Contact",
             "",
             &["contact"], CONTACT, "#[contact(ball.sphere(radius), ground.plane(z), friction = mu, restitution = e)]")
         };
         /// Element type `State`: a state of first order.
         State = OtherElementRow {
             own: &["rate"],
-            ..row("State", "", &["state"], &[], "#[state(rate = (command - level) / lag)]")
+            ..element_row("State", "", &["state"], &[], "#[state(rate = (command - level) / lag)]")
         };
         /// Element type `Equilibrium`: a configuration about which equations are linearised.
-        Equilibrium = row("Equilibrium", "", &["equilibrium"], &[], "#[equilibrium(joint = angle)]");
+        Equilibrium = element_row("Equilibrium", "", &["equilibrium"], &[], "#[equilibrium(joint = angle)]");
         /// Element type `Speed`: a generalized speed.
-        Speed = row("Speed",
+        Speed = element_row("Speed",
             "generalizedspeed generalisedspeed quasivelocity quasicoordinate pseudovelocity motionvariable \
              speeds",
             &["speed"], &[], "#[speed(rate(psi) * sin(theta))]");
         /// Element type `Scalar`: a named scalar, which is a definition or an output.
-        Scalar = row("Scalar", "", &["define", "output"], &[], "#[output(expression)]");
+        Scalar = element_row("Scalar", "", &["define", "output"], &[], "#[output(expression)]");
         /// Element type `Vector`: a named vector.
         Vector = OtherElementRow {
             own: AXES,
-            ..row("Vector", "vector3 vec3 vector3d vec",
+            ..element_row("Vector", "vector3 vec3 vector3d vec",
             &["define", "output"], AXES_WORDS, "#[output(expression)]")
         };
         /// Element type `Matrix`: a named matrix.
         Matrix = OtherElementRow {
             own: AXES,
-            ..row("Matrix", "", &["define", "output"], AXES_WORDS, "#[output(expression)]")
+            ..element_row("Matrix", "", &["define", "output"], AXES_WORDS, "#[output(expression)]")
         };
         /// Element type `FreeBody`: the free-body diagram of a body.
         FreeBody = OtherElementRow {
             own: AXES,
-            ..row("FreeBody", "", &["output"], AXES_WORDS, "#[output(body)]")
+            ..element_row("FreeBody", "", &["output"], AXES_WORDS, "#[output(body)]")
         };
     }
 }
 
 /// Names of other tools for the arguments of a contact.
-const CONTACT: Words = &[
+const CONTACT: WordsWithMeanings = &[
     ("mu muk coefficient frictioncoefficient coulomb kinetic kineticfriction sliding", "friction"),
     ("mus static staticfriction breakaway stick fs", "stiction"),
     ("spinning spin torsion torsionalfriction spinningfriction mutorsion drilling", "torsional"),
@@ -172,7 +173,7 @@ const CONTACT: Words = &[
 ];
 
 /// Names of other tools for the arguments of a limit.
-const LIMIT: Words = &[
+const LIMIT: WordsWithMeanings = &[
     (ON, "on"),
     ("lower low min minimum least start lowerlimit", "from"),
     ("upper high max maximum most end upperlimit", "to"),
@@ -185,13 +186,15 @@ const LIMIT: Words = &[
 ];
 
 /// Names of other tools for the arguments of a point.
-const POINT: Words = &[("body parent frame link", "on"), ("pos position xyz offset location r vector", "at")];
+const POINT: WordsWithMeanings =
+    &[("body parent frame link", "on"), ("pos position xyz offset location r vector", "at")];
 
 /// Names of other tools for the argument with the axes of an output's components.
-const AXES_WORDS: Words = &[("frame axes basis in of expressedin resolved resolvedin", "resolved_in")];
+const AXES_WORDS: WordsWithMeanings =
+    &[("frame axes basis in of expressedin resolved resolvedin", "resolved_in")];
 
 /// Names of other tools for the arguments of rolling surfaces.
-const ROLLING: Words = &[(
+const ROLLING: WordsWithMeanings = &[(
     "friction speed",
     "surfaces with friction slip: declare a `Slipping` with `slips(…)` in place of `rolls(…)`",
 )];

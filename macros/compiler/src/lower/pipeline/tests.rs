@@ -21,9 +21,11 @@ fn select_without_passes(outputs: impl for<'g> Fn([Expr<'g>; 8]) -> Vec<Expr<'g>
 fn texts_around_pass(pass: &Pass, mut program: Program) -> [Vec<String>; 2] {
     program.counts = program.count_operations();
     let after = program.clone().run_passes(&[*pass]);
-    let value_of_symbol = |s: Symbol| 0.7 + 0.3 * f64::from(s.0);
-    for (a, b) in
-        program.interpret_program(&value_of_symbol).iter().zip(after.interpret_program(&value_of_symbol))
+    let test_number_of_symbol = |s: Symbol| 0.7 + 0.3 * f64::from(s.0);
+    for (a, b) in program
+        .interpret_program(&test_number_of_symbol)
+        .iter()
+        .zip(after.interpret_program(&test_number_of_symbol))
     {
         assert!((a - b).abs() <= 1e-13 * a.abs().max(1.0), "{}: {a} and {b}", pass.name);
     }

@@ -36,12 +36,12 @@ impl SharedPairs {
             }
         }
         let mut pairs = SharedPairs::default();
-        pairs.add(all);
+        pairs.add_new_pairs(all);
         pairs
     }
 
     /// Adds pairs that no sum contained before, each with a sum that contains it.
-    pub(super) fn add(&mut self, mut pairs: Vec<(TermPair, usize)>) {
+    pub(super) fn add_new_pairs(&mut self, mut pairs: Vec<(TermPair, usize)>) {
         pairs.sort_unstable();
         for same in pairs.chunk_by(|a, b| a.0 == b.0).filter(|same| same.len() > 1) {
             self.shared.insert((same.len(), Reverse(same[0].0)));
@@ -83,12 +83,12 @@ impl TermPair {
     }
 
     /// Returns the number of the first key of a pair of terms.
-    pub(super) fn first_key(self) -> u32 {
+    pub(super) fn first_key_index(self) -> u32 {
         (self.0 >> 96) as u32
     }
 
     /// Returns the number of the second key of a pair of terms.
-    pub(super) fn second_term_key(self) -> u32 {
+    pub(super) fn second_key_index(self) -> u32 {
         (self.0 >> 64) as u32
     }
 

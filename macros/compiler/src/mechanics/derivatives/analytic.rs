@@ -16,9 +16,9 @@ use super::super::crba::{Matrix, momentum};
 use super::super::rnea;
 use super::ForceDerivatives;
 use super::columns::{DofMotionChanges, coriolis_columns, derivative_columns, link_motions};
-use super::subtree::{Subtree, subtree_sums};
+use super::subtree::{SubtreeMassAndWrench, subtree_sums};
 use crate::expr::{Expr, Vec3};
-use crate::kinematics::{Joint, Spatial, time_derivative, twists, velocity_gradient};
+use crate::kinematics::{Joint, SpatialVector, time_derivative, twists, velocity_gradient};
 use crate::mechanism::Model;
 use crate::vectorise::{LaneGroup, PathsToRoot, PropagatedQuantity, RootPropagationVisitor};
 
@@ -34,7 +34,7 @@ pub fn inverse_dynamics<'g>(
     let motions = link_motions(model, joints, v, a);
     let columns: Vec<Vec<DofMotionChanges<'g>>> =
         joints.iter().zip(&motions).map(|(j, m)| derivative_columns(j, m)).collect();
-    let twists: Vec<Spatial<'g>> = motions.iter().map(|m| m.own.twist()).collect();
+    let twists: Vec<SpatialVector<'g>> = motions.iter().map(|m| m.own.twist()).collect();
     let wrenches = rnea::link_wrenches(model, joints, v, Some(a));
     let sums = subtree_sums(model, joints, &twists, &wrenches, 2.0);
     derivative_entries(model, joints, &columns, &sums, most)
@@ -51,7 +51,7 @@ pub fn coriolis_matrix<'g>(
     let twists = twists(model, joints, v);
     let columns: Vec<Vec<DofMotionChanges<'g>>> =
         joints.iter().zip(&twists).map(|(j, t)| coriolis_columns(model, j, t)).collect();
-    let still = vec![Spatial::zero(model); joints.len()];
+    let still = vec![SpatialVector::zero(model); joints.len()];
     let sums = subtree_sums(model, joints, &twists, &still, 1.0);
     let mut matrix = derivative_entries(model, joints, &columns, &sums, most).by_v;
     add_inertances(model, &mut matrix);
@@ -77,7 +77,7 @@ fn derivative_entries<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
     columns: &[Vec<DofMotionChanges<'g>>],
-    sums: &[Subtree<'g>],
+    sums: &[SubtreeMassAndWrench<'g>],
     most: usize,
 ) -> ForceDerivatives<'g> {
     let zero_matrix = || vec![vec![model.graph.zero(); model.nv()]; model.nv()];
@@ -99,24 +99,29 @@ struct ForceDerivativeVisitor<'a, 'g> {
     columns: &'a [Vec<DofMotionChanges<'g>>],
     all: Vec<DofMotionChanges<'g>>,
     links: &'a [usize],
-    sums: &'a [Subtree<'g>],
+    sums: &'a [SubtreeMassAndWrench<'g>],
     out: ForceDerivatives<'g>,
 }
 
 impl<'g> RootPropagationVisitor<'g> for ForceDerivativeVisitor<'_, 'g> {
-    type Item = DofContribution<'g>;
+    type Quantity = DofWrenchDerivatives<'g>;
 
-    fn start(&mut self, dof: usize) -> DofContribution<'g> {
+    fn initial_quantity_of_dof(&mut self, dof: usize) -> DofWrenchDerivatives<'g> {
         let (own, link) = (&self.all[dof], self.links[dof]);
-        let mut changes = DofContribution::new(own, &self.sums[link]);
+        let mut changes = DofWrenchDerivatives::new(own, &self.sums[link]);
         for row in &self.columns[link] {
-            self.out.add(row, own, row.subspace.dot(&changes.by_q), row.subspace.dot(&changes.by_v));
+            self.out.add_derivative_entries(
+                row,
+                own,
+                row.subspace.dot(&changes.by_q),
+                row.subspace.dot(&changes.by_v),
+            );
         }
         changes.by_q = changes.by_q.plus(&cross_force(&own.subspace, &self.sums[link].wrench));
         changes
     }
 
-    fn visit(&mut self, group: &LaneGroup<DofContribution<'g>>) {
+    fn process_transformed_group(&mut self, group: &LaneGroup<DofWrenchDerivatives<'g>>) {
         for other in &self.columns[group.link] {
             let [above, below] = group
                 .item
@@ -124,10 +129,10 @@ impl<'g> RootPropagationVisitor<'g> for ForceDerivativeVisitor<'_, 'g> {
             let pair_entries_by_dof =
                 |[by_q, by_v]: [Expr<'g>; 2]| group.lanes_of_members(by_q).zip(group.lanes_of_members(by_v));
             for ((dof, by_q), (_, by_v)) in pair_entries_by_dof(above) {
-                self.out.add(other, &self.all[dof], by_q, by_v);
+                self.out.add_derivative_entries(other, &self.all[dof], by_q, by_v);
             }
             for ((dof, by_q), (_, by_v)) in pair_entries_by_dof(below) {
-                self.out.add(&self.all[dof], other, by_q, by_v);
+                self.out.add_derivative_entries(&self.all[dof], other, by_q, by_v);
             }
         }
     }
@@ -135,22 +140,22 @@ impl<'g> RootPropagationVisitor<'g> for ForceDerivativeVisitor<'_, 'g> {
 
 /// Contribution of one degree of freedom to the entries with its ancestors, as wrenches about an ancestor's
 /// origin in the ancestor's axes.
-struct DofContribution<'g> {
+struct DofWrenchDerivatives<'g> {
     /// Change of the wrench with the displacement of the degree of freedom.
-    by_q: Spatial<'g>,
+    by_q: SpatialVector<'g>,
     /// Change of the wrench with the velocity of the degree of freedom.
-    by_v: Spatial<'g>,
+    by_v: SpatialVector<'g>,
     /// Momentum `I S` of the link and its descendants at unit velocity of the degree of freedom.
-    momentum: Spatial<'g>,
+    momentum: SpatialVector<'g>,
     /// Transposed velocity map `Bᵀ S`, a pure moment.
     moment: Vec3<'g>,
 }
 
-impl<'g> DofContribution<'g> {
-    fn new(column: &DofMotionChanges<'g>, sum: &Subtree<'g>) -> DofContribution<'g> {
-        DofContribution {
-            by_q: momentum(&sum.inertia, &column.second).plus(&sum.map(&column.first)),
-            by_v: sum.map(&column.subspace).plus(&momentum(&sum.inertia, &column.rate)),
+impl<'g> DofWrenchDerivatives<'g> {
+    fn new(column: &DofMotionChanges<'g>, sum: &SubtreeMassAndWrench<'g>) -> DofWrenchDerivatives<'g> {
+        DofWrenchDerivatives {
+            by_q: momentum(&sum.inertia, &column.second).plus(&sum.velocity_map(&column.first)),
+            by_v: sum.velocity_map(&column.subspace).plus(&momentum(&sum.inertia, &column.rate)),
             momentum: momentum(&sum.inertia, &column.subspace),
             moment: sum.transposed_velocity_map(&column.subspace),
         }
@@ -166,10 +171,10 @@ impl<'g> DofContribution<'g> {
     }
 }
 
-impl_propagated!(DofContribution { by_q, by_v, momentum, moment });
+impl_propagated!(DofWrenchDerivatives { by_q, by_v, momentum, moment });
 
 impl<'g> ForceDerivatives<'g> {
-    fn add(
+    fn add_derivative_entries(
         &mut self,
         row: &DofMotionChanges<'g>,
         column: &DofMotionChanges<'g>,
@@ -183,8 +188,8 @@ impl<'g> ForceDerivatives<'g> {
 }
 
 /// Returns `S ×* F`, the change of a wrench `F` that moves along `S`.
-pub fn cross_force<'g>(s: &Spatial<'g>, f: &Spatial<'g>) -> Spatial<'g> {
-    Spatial {
+pub fn cross_force<'g>(s: &SpatialVector<'g>, f: &SpatialVector<'g>) -> SpatialVector<'g> {
+    SpatialVector {
         linear: s.angular.cross(f.linear),
         angular: s.angular.cross(f.angular) + s.linear.cross(f.linear),
     }

@@ -5,7 +5,7 @@
 use super::ForceDerivatives;
 use super::symbolic;
 use crate::expr::{Expr, Vec3};
-use crate::kinematics::{Dof, Joint, Spatial};
+use crate::kinematics::{Dof, Joint, SpatialVector};
 use crate::mechanism::{BLOCK_LENGTH, Inertia, LINK_QUANTITIES, LinkBlock, MASS_PROPERTIES, Model, Motion};
 
 /// Number of velocities of a free root link.
@@ -48,7 +48,7 @@ pub fn link_blocks<'g>(
     for block in &blocks {
         push_lanes(
             lanes_of_block(block, joints)
-                .map(|(link, dof)| link_quantities(&placements[link], dof, [v, a]))
+                .map(|(link, dof)| link_quantities_in_root_axes(&placements[link], dof, [v, a]))
                 .collect(),
             LINK_QUANTITIES,
         );
@@ -59,14 +59,14 @@ pub fn link_blocks<'g>(
             // The mass properties of a free link are in its last lane only, which all others include.
             let counted = joints[link].dofs.len() == 1 || lane + 1 == block.count;
             let inertia = if counted { model.links[link].inertia } else { Inertia::zero(model.graph) };
-            mass_properties(&inertia)
+            flattened_mass_properties(&inertia)
         };
         push_lanes(lanes.map(mass_properties_of_lane).collect(), MASS_PROPERTIES);
     }
     let upward = -model.gravity;
-    let ground = if free { joints[0].rotation.to_child(upward) } else { upward };
+    let ground = if free { joints[0].rotation.vector_in_child_axes(upward) } else { upward };
     quantities.extend(ground.0);
-    Some(LinkBlocks { blocks, free, quantities, passive: passive_entries(model) })
+    Some(LinkBlocks { blocks, free, quantities, passive: nonzero_passive_force_derivatives(model) })
 }
 
 /// Divides the links into blocks; `None` if the loops do not support their joints.
@@ -133,8 +133,8 @@ fn placements_from_root<'g>(model: &Model<'g>, joints: &[Joint<'g>], free: bool)
             parent => {
                 let above = parent.map_or(&ground, |p| &all[p.0]);
                 RootPlacement {
-                    rows: above.rows.map(|row| joint.rotation.to_child(row)),
-                    position: above.position + to_root(&above.rows, joint.translation),
+                    rows: above.rows.map(|row| joint.rotation.vector_in_child_axes(row)),
+                    position: above.position + rotate_to_root_axes(&above.rows, joint.translation),
                 }
             }
         };
@@ -144,26 +144,30 @@ fn placements_from_root<'g>(model: &Model<'g>, joints: &[Joint<'g>], free: bool)
 }
 
 /// Returns a vector in the axes of the root, given the rows of the rotation matrix of its frame.
-fn to_root<'g>(rows: &[Vec3<'g>; 3], x: Vec3<'g>) -> Vec3<'g> {
+fn rotate_to_root_axes<'g>(rows: &[Vec3<'g>; 3], x: Vec3<'g>) -> Vec3<'g> {
     Vec3(rows.map(|row| row.dot(x)))
 }
 
-fn link_quantities<'g>(place: &RootPlacement<'g>, dof: &Dof<'g>, [v, a]: [&[Expr<'g>]; 2]) -> Vec<Expr<'g>> {
-    let Spatial { linear, angular } = dof.subspace.times_scalar(place.position[0].num(dof.ratio));
-    let axis = to_root(&place.rows, angular);
-    let linear = to_root(&place.rows, linear) + place.position.cross(axis);
+fn link_quantities_in_root_axes<'g>(
+    place: &RootPlacement<'g>,
+    dof: &Dof<'g>,
+    [v, a]: [&[Expr<'g>]; 2],
+) -> Vec<Expr<'g>> {
+    let SpatialVector { linear, angular } = dof.subspace.times_scalar(place.position[0].num(dof.ratio));
+    let axis = rotate_to_root_axes(&place.rows, angular);
+    let linear = rotate_to_root_axes(&place.rows, linear) + place.position.cross(axis);
     let rotation = place.rows.iter().flat_map(|row| row.0);
     let joint = [v[dof.index], a[dof.index]];
     linear.0.into_iter().chain(axis.0).chain(rotation).chain(place.position.0).chain(joint).collect()
 }
 
-fn mass_properties<'g>(inertia: &Inertia<'g>) -> Vec<Expr<'g>> {
+fn flattened_mass_properties<'g>(inertia: &Inertia<'g>) -> Vec<Expr<'g>> {
     let [xy, xz, yz] = inertia.tensor.off;
     let own = [inertia.mass].into_iter().chain(inertia.moment.0);
     own.chain(inertia.tensor.diagonal).chain([yz, xz, xy]).collect()
 }
 
-fn passive_entries<'g>(model: &Model<'g>) -> Vec<(bool, usize, usize, Expr<'g>)> {
+fn nonzero_passive_force_derivatives<'g>(model: &Model<'g>) -> Vec<(bool, usize, usize, Expr<'g>)> {
     let ForceDerivatives { by_q, by_v } = symbolic::passive_force_state_derivatives(model);
     let mut all = Vec::new();
     for (by_velocity, matrix) in [(false, by_q), (true, by_v)] {

@@ -3,7 +3,7 @@
 //! `Ψ̈ = A × S + V × Ψ̇`.
 
 use crate::expr::{Expr, Mat3, Vec3};
-use crate::kinematics::{Dof, Joint, Spatial};
+use crate::kinematics::{Dof, Joint, SpatialVector};
 use crate::mechanism::Model;
 
 /// Motion of a frame in its own axes. Accelerations are classical (those of points), and gravity is included
@@ -40,8 +40,8 @@ impl<'g> FrameMotion<'g> {
     }
 
     /// Returns the twist: velocity of the origin and angular velocity.
-    pub fn twist(&self) -> Spatial<'g> {
-        Spatial { linear: self.v, angular: self.w }
+    pub fn twist(&self) -> SpatialVector<'g> {
+        SpatialVector { linear: self.v, angular: self.w }
     }
 }
 
@@ -66,10 +66,10 @@ pub fn link_motions<'g>(
         let above = joint.parent.map_or(FrameMotion::state_of_ground(model), |p| motions[p.0].own);
         let (turn, p) = (&joint.rotation, joint.translation);
         let parent = FrameMotion {
-            v: turn.to_child(above.v + above.w.cross(p)),
-            w: turn.to_child(above.w),
-            dw: turn.to_child(above.dw),
-            a: turn.to_child(above.a + above.angular_acceleration_tensor() * p),
+            v: turn.vector_in_child_axes(above.v + above.w.cross(p)),
+            w: turn.vector_in_child_axes(above.w),
+            dw: turn.vector_in_child_axes(above.dw),
+            a: turn.vector_in_child_axes(above.a + above.angular_acceleration_tensor() * p),
         };
         let (rate, change) = (joint.twist_with_prescribed_motion(model, v), joint.relative_twist(model, a));
         let w = parent.w;
@@ -93,21 +93,22 @@ pub struct DofMotionChanges<'g> {
     /// Joint velocity per unit of the entry of `v`.
     pub ratio: f64,
     /// Motion subspace `S`, in link axes.
-    pub subspace: Spatial<'g>,
+    pub subspace: SpatialVector<'g>,
     /// Change `Ψ̇ = V × S` of the link's twist with a displacement, `V` of the parent.
-    pub first: Spatial<'g>,
+    pub first: SpatialVector<'g>,
     /// Change `Ψ̈ = A × S + V × Ψ̇` of the link's acceleration with a displacement, `V` and `A` of the
     /// parent.
-    pub second: Spatial<'g>,
+    pub second: SpatialVector<'g>,
     /// Change `Ψ̇ + Ṡ` of the link's acceleration with the velocity, where `Ṡ = V × S` with the link's own
     /// twist `V`.
-    pub rate: Spatial<'g>,
+    pub rate: SpatialVector<'g>,
 }
 
 impl<'g> DofMotionChanges<'g> {
     /// Applies a function to all expressions of a derivative column.
     pub fn map(&self, f: &dyn Fn(Expr<'g>) -> Expr<'g>) -> DofMotionChanges<'g> {
-        let map_components = |s: &Spatial<'g>| Spatial { linear: s.linear.map(f), angular: s.angular.map(f) };
+        let map_components =
+            |s: &SpatialVector<'g>| SpatialVector { linear: s.linear.map(f), angular: s.angular.map(f) };
         DofMotionChanges {
             subspace: map_components(&self.subspace),
             first: map_components(&self.first),
@@ -134,7 +135,7 @@ pub fn derivative_columns<'g>(joint: &Joint<'g>, motion: &LinkMotion<'g>) -> Vec
         // (s, r).
         let turning = above.w.cross(s.angular);
         let linear = u * s.linear + above.a.cross(s.angular) + above.v.cross(turning + turning);
-        let second = Spatial { linear, angular: u * s.angular };
+        let second = SpatialVector { linear, angular: u * s.angular };
         DofMotionChanges { index: dof.index, ratio: dof.ratio, subspace: *s, first, second, rate }
     };
     joint.dofs.iter().map(derivative_column).collect()
@@ -145,9 +146,9 @@ pub fn derivative_columns<'g>(joint: &Joint<'g>, motion: &LinkMotion<'g>) -> Vec
 pub fn coriolis_columns<'g>(
     model: &Model<'g>,
     joint: &Joint<'g>,
-    twist: &Spatial<'g>,
+    twist: &SpatialVector<'g>,
 ) -> Vec<DofMotionChanges<'g>> {
-    let zero = Spatial::zero(model);
+    let zero = SpatialVector::zero(model);
     let jacobian_column_with_rate = |(k, dof): (usize, &Dof<'g>)| {
         let own = joint.drift.as_ref().and_then(|drift| drift.subspace_rates.get(k));
         let rate = own.unwrap_or(&zero).plus(&cross(twist, &dof.subspace));
@@ -164,8 +165,8 @@ pub fn coriolis_columns<'g>(
 }
 
 /// Returns `V × X`, the rate of a motion `X` that moves with the twist `V`.
-pub fn cross<'g>(v: &Spatial<'g>, x: &Spatial<'g>) -> Spatial<'g> {
-    Spatial {
+pub fn cross<'g>(v: &SpatialVector<'g>, x: &SpatialVector<'g>) -> SpatialVector<'g> {
+    SpatialVector {
         linear: v.angular.cross(x.linear) + v.linear.cross(x.angular),
         angular: v.angular.cross(x.angular),
     }

@@ -10,7 +10,7 @@ use crate::expr::Expr;
 use crate::kinematics::Joint;
 
 /// The factors `M = Lᵀ D L`, or `U D L` of an unsymmetric matrix; `L` and `U` have unit diagonals.
-pub struct Factor<'g> {
+pub struct MatrixFactorisation<'g> {
     /// Indices of `v` in elimination order: from the leaves to the root.
     order: Vec<usize>,
     /// Nonzero off-diagonal entries of `L`, a row for each entry of `v`.
@@ -22,19 +22,19 @@ pub struct Factor<'g> {
     inverse: Vec<Expr<'g>>,
 }
 
-impl<'g> Factor<'g> {
+impl<'g> MatrixFactorisation<'g> {
     /// Factorises a mass matrix, which may be unsymmetric, in an order from leaves to root.
-    pub fn new(mass: &Matrix<'g>, joints: &[Joint<'g>]) -> Factor<'g> {
+    pub fn new(mass: &Matrix<'g>, joints: &[Joint<'g>]) -> MatrixFactorisation<'g> {
         let order = elimination_order(joints, mass.len());
         let n = mass.len();
         match (0..n).all(|i| (0..i).all(|j| mass[i][j] == mass[j][i])) {
-            true => Factor::factorise_from_leaves_to_root(mass, &order),
-            false => Factor::factorise_unsymmetric(mass, &order),
+            true => MatrixFactorisation::factorise_from_leaves_to_root(mass, &order),
+            false => MatrixFactorisation::factorise_unsymmetric(mass, &order),
         }
     }
 
     /// Factorises a matrix that need not be symmetric.
-    fn factorise_unsymmetric(mass: &Matrix<'g>, order: &[usize]) -> Factor<'g> {
+    fn factorise_unsymmetric(mass: &Matrix<'g>, order: &[usize]) -> MatrixFactorisation<'g> {
         let mut m = mass.clone();
         let (mut rows, mut columns) = (vec![Vec::new(); m.len()], vec![Vec::new(); m.len()]);
         let mut inverse: Vec<Expr<'g>> = (0..m.len()).map(|k| m[k][k].num(1.0)).collect();
@@ -53,11 +53,11 @@ impl<'g> Factor<'g> {
             }
             rows[k] = row.into_iter().map(|j| (j, m[k][j] * inverse[k])).collect();
         }
-        Factor { order: order.to_vec(), rows, columns: Some(columns), inverse }
+        MatrixFactorisation { order: order.to_vec(), rows, columns: Some(columns), inverse }
     }
 
     /// Factorises the symmetric block of the entries of `v` in `order`, which lists leaves before the root.
-    pub fn factorise_from_leaves_to_root(mass: &Matrix<'g>, order: &[usize]) -> Factor<'g> {
+    pub fn factorise_from_leaves_to_root(mass: &Matrix<'g>, order: &[usize]) -> MatrixFactorisation<'g> {
         let mut m = mass.clone();
         let mut rows = vec![Vec::new(); m.len()];
         let mut inverse: Vec<Expr<'g>> = (0..m.len()).map(|k| m[k][k].num(1.0)).collect();
@@ -79,7 +79,7 @@ impl<'g> Factor<'g> {
                 rows[k].push((i, factor));
             }
         }
-        Factor { order: order.to_vec(), rows, columns: None, inverse }
+        MatrixFactorisation { order: order.to_vec(), rows, columns: None, inverse }
     }
 
     /// Returns the solution `M⁻¹ r` of a linear system with the factorised matrix.

@@ -14,20 +14,20 @@
 use super::{ForceDerivatives, symbolic};
 use crate::expr::diff::DirectionalDerivative;
 use crate::expr::{Expr, Mat3, Symbol, Vec3};
-use crate::kinematics::{Joint, Spatial, symbols_in};
+use crate::kinematics::{Joint, SpatialVector, symbols_in};
 use crate::mechanics::{acceleration_symbols, rnea, velocity_symbols};
 use crate::mechanism::{Inertia, Link, Model, Motion, Quantity};
 
 /// Columns of a matrix that invariance determines, each with its index.
-type Columns<'g> = Vec<(usize, Vec<Expr<'g>>)>;
+type IndexedColumns<'g> = Vec<(usize, Vec<Expr<'g>>)>;
 
 /// Columns of `∂v̇/∂q` and `∂v̇/∂v` that invariance under displacements of a free base determines.
 #[derive(Default)]
 pub struct InvariantColumns<'g> {
     /// Columns of `∂v̇/∂q` that invariance under displacements determines.
-    pub by_q: Columns<'g>,
+    pub by_q: IndexedColumns<'g>,
     /// Columns of `∂v̇/∂v` that invariance under displacements determines.
-    pub by_v: Columns<'g>,
+    pub by_v: IndexedColumns<'g>,
 }
 
 /// Finds the columns of derivatives that invariance under displacements of a free base determines.
@@ -48,7 +48,7 @@ pub fn columns_determined_by_invariance<'g>(model: &Model<'g>, joints: &[Joint<'
         base.is_dynamics_independent_of_base(model, joints) && others.has_only_link_inertia(base.v)
     }) {
         let v = base.v;
-        let block_columns = |first: usize, block: Mat3<'g>| {
+        let columns_containing_block = |first: usize, block: Mat3<'g>| {
             (0..3).map(move |k| {
                 let mut column = vec![model.graph.zero(); model.nv()];
                 for (i, entry) in column[v..v + 3].iter_mut().enumerate() {
@@ -58,12 +58,12 @@ pub fn columns_determined_by_invariance<'g>(model: &Model<'g>, joints: &[Joint<'
             })
         };
         if are_zero_columns(&others.forces.by_q, v + 3) {
-            let gravity = joints[base.link].rotation.to_child(model.gravity);
-            found.by_q.extend(block_columns(v + 3, Mat3::skew(gravity)));
+            let gravity = joints[base.link].rotation.vector_in_child_axes(model.gravity);
+            found.by_q.extend(columns_containing_block(v + 3, Mat3::skew(gravity)));
         }
         if are_zero_columns(&others.forces.by_v, v) {
             let w = Vec3([3, 4, 5].map(|k| Quantity::Velocity(v + k).expr(model.graph)));
-            found.by_v.extend(block_columns(v, Mat3::skew(-w)));
+            found.by_v.extend(columns_containing_block(v, Mat3::skew(-w)));
         }
     }
     found
@@ -93,10 +93,14 @@ impl FreeBase {
             }
             all.extend(joint.rotation.rotation_matrix().0.as_flattened());
             all.extend(joint.translation.0);
-            let mut add = |s: &Spatial<'g>| all.extend(s.linear.0.iter().chain(&s.angular.0));
-            joint.dofs.iter().for_each(|dof| add(&dof.subspace));
+            let mut collect_spatial_components =
+                |s: &SpatialVector<'g>| all.extend(s.linear.0.iter().chain(&s.angular.0));
+            joint.dofs.iter().for_each(|dof| collect_spatial_components(&dof.subspace));
             if let Some(drift) = &joint.drift {
-                [&drift.twist, &drift.acceleration].into_iter().chain(&drift.subspace_rates).for_each(add);
+                [&drift.twist, &drift.acceleration]
+                    .into_iter()
+                    .chain(&drift.subspace_rates)
+                    .for_each(collect_spatial_components);
             }
         }
         !symbols_in(&all).into_iter().any(|s| self.is_symbol_of_base(s))
@@ -135,7 +139,10 @@ impl<'g> NoninertialTerms<'g> {
             forces.iter().any(|force| !d.differentiate(*force).is_zero())
         };
         let inertial = (0..model.nv()).map(forces_depend_on_acceleration).collect();
-        NoninertialTerms { forces: symbolic::force_derivatives(model, &forces), inertial }
+        NoninertialTerms {
+            forces: symbolic::configuration_and_velocity_derivatives(model, &forces),
+            inertial,
+        }
     }
 
     /// Returns true if no inertia except that of the links acts on the linear acceleration of the base whose

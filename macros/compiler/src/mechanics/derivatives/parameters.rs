@@ -3,10 +3,10 @@
 
 use super::super::crba::Matrix;
 use super::super::{acceleration_symbols, added_mass, crba, forces, rnea, velocity_symbols};
-use super::Factor;
+use super::MatrixFactorisation;
 use crate::expr::Expr;
 use crate::expr::diff::DirectionalDerivative;
-use crate::expr::replace::replace_all;
+use crate::expr::replace::substitute_symbols_in_all;
 use crate::kinematics::Joint;
 use crate::mechanism::{Model, Quantity};
 
@@ -17,8 +17,8 @@ pub fn inverse_dynamics<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Matrix<'
 }
 
 /// Returns the columns of `∂τ/∂p` of the input forces, one for each parameter `p`.
-pub fn generalized_forces<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Matrix<'g> {
-    parameter_derivatives(model, &forces::generalized_forces(model, joints))
+pub fn generalized_forces_of_inputs<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Matrix<'g> {
+    parameter_derivatives(model, &forces::generalized_forces_of_inputs(model, joints))
 }
 
 /// Returns the columns of the derivatives of values, one for each parameter.
@@ -32,8 +32,10 @@ pub fn parameter_derivatives<'g>(model: &Model<'g>, values: &[Expr<'g>]) -> Matr
 
 /// Returns the columns of `∂v̇/∂p = −M⁻¹ ∂τ/∂p` of forward dynamics under the forces `tau`, at `a = v̇`.
 pub fn forward_dynamics<'g>(model: &Model<'g>, joints: &[Joint<'g>], tau: &[Expr<'g>]) -> Matrix<'g> {
-    let factor =
-        Factor::new(&added_mass::effective_mass_matrix(model, &crba::mass_matrix(model, joints)), joints);
+    let factor = MatrixFactorisation::new(
+        &added_mass::effective_mass_matrix(model, &crba::mass_matrix(model, joints)),
+        joints,
+    );
     let bias = rnea::inverse_dynamics(model, joints, &velocity_symbols(model), None);
     let a = factor.solve_factored(tau.iter().zip(&bias).map(|(t, h)| *t - *h).collect());
     let acceleration_of_symbol = |s| match Quantity::from_symbol(s) {
@@ -42,7 +44,9 @@ pub fn forward_dynamics<'g>(model: &Model<'g>, joints: &[Joint<'g>], tau: &[Expr
     };
     let columns = inverse_dynamics(model, joints);
     let solve_for_accelerations = |column: &Vec<Expr<'g>>| {
-        factor.solve_factored(replace_all(column, &acceleration_of_symbol).iter().map(|e| -*e).collect())
+        factor.solve_factored(
+            substitute_symbols_in_all(column, &acceleration_of_symbol).iter().map(|e| -*e).collect(),
+        )
     };
     columns.iter().map(solve_for_accelerations).collect()
 }

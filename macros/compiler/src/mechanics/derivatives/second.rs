@@ -26,10 +26,10 @@
 use super::super::crba::{Matrix, momentum};
 use super::super::{acceleration_symbols, constraints, rnea, velocity_symbols};
 use super::columns::{DofMotionChanges, cross, derivative_columns, link_motions};
-use super::subtree::{Subtree, subtree_sums, sums_of_single_body};
+use super::subtree::{SubtreeMassAndWrench, subtree_sums, sums_of_single_body};
 use super::{analytic, has_constant_subspaces, symbolic};
 use crate::expr::{Expr, Sym3, Vec3};
-use crate::kinematics::{Joint, Spatial, twists};
+use crate::kinematics::{Joint, SpatialVector, twists};
 use crate::mechanics::passive::passive_forces;
 use crate::mechanism::{Chart, Inertia, Model, Quantity, SuppliedQuantity};
 use crate::vectorise::{LaneGroup, PathsToRoot, PropagatedQuantity, RootPropagationVisitor};
@@ -66,7 +66,7 @@ pub fn hessian_by_recursion<'g>(model: &Model<'g>, joints: &[Joint<'g>], most: u
         .iter()
         .zip(&motions)
         .map(|(joint, motion)| {
-            let ground = Spatial::zero(model);
+            let ground = SpatialVector::zero(model);
             let above = joint.parent.map_or(ground, |p| joint.twist_to_child(&virtual_twists[p.0]));
             let column_with_twist_change = |column: DofMotionChanges<'g>| ColumnWithTwistChange {
                 factor: cross(&above, &column.subspace),
@@ -75,7 +75,7 @@ pub fn hessian_by_recursion<'g>(model: &Model<'g>, joints: &[Joint<'g>], most: u
             derivative_columns(joint, motion).into_iter().map(column_with_twist_change).collect()
         })
         .collect();
-    let own: Vec<Spatial<'g>> = motions.iter().map(|m| m.own.twist()).collect();
+    let own: Vec<SpatialVector<'g>> = motions.iter().map(|m| m.own.twist()).collect();
     let wrenches = rnea::link_wrenches(model, joints, &v, Some(&a));
     let sums = subtree_sums(model, joints, &own, &wrenches, 2.0);
     let sums = subtree_sums_with_virtual_twists(model, joints, (&own, &virtual_twists), sums);
@@ -91,7 +91,7 @@ pub fn hessian_by_recursion<'g>(model: &Model<'g>, joints: &[Joint<'g>], most: u
     };
     paths.propagate_to_root(&mut entries);
     let mut out = entries.out;
-    out.add(&passive_hessian(model, &lambda));
+    out.add_hessian(&passive_hessian(model, &lambda));
     Some(out)
 }
 
@@ -111,15 +111,15 @@ fn passive_hessian<'g>(model: &Model<'g>, lambda: &[Expr<'g>]) -> Hessian<'g> {
 pub fn hessian_of_power<'g>(model: &Model<'g>, tau: &[Expr<'g>], lambda: &[Expr<'g>]) -> Hessian<'g> {
     let zero = model.graph.zero();
     let power = tau.iter().zip(lambda).fold(zero, |sum, (tau, factor)| sum + *tau * *factor);
-    let first = symbolic::force_derivatives(model, &[power]);
+    let first = symbolic::configuration_and_velocity_derivatives(model, &[power]);
     let by_q = first.by_q.into_iter().next().unwrap_or_default();
     let by_v = first.by_v.into_iter().next().unwrap_or_default();
-    let mut second = symbolic::force_derivatives(model, &by_q);
-    symmetrise_block(model, &mut second.by_q);
+    let mut second = symbolic::configuration_and_velocity_derivatives(model, &by_q);
+    symmetrise_configuration_block(model, &mut second.by_q);
     Hessian {
         qq: second.by_q,
         qv: second.by_v,
-        vv: symbolic::force_derivatives(model, &by_v).by_v,
+        vv: symbolic::configuration_and_velocity_derivatives(model, &by_v).by_v,
         qa: symbolic::acceleration_derivative_matrix(model, &by_q),
     }
 }
@@ -137,13 +137,13 @@ pub struct InputHessian<'g> {
 }
 
 /// Returns the second derivatives of the power `λᵀ τ` of the input forces `tau`.
-pub fn hessian_of_inputs<'g>(model: &Model<'g>, tau: &[Expr<'g>]) -> InputHessian<'g> {
+pub fn hessian_of_input_power<'g>(model: &Model<'g>, tau: &[Expr<'g>]) -> InputHessian<'g> {
     let lambda = force_factor_symbols(model);
     let zero = model.graph.zero();
     let power = tau.iter().zip(&lambda).fold(zero, |sum, (tau, factor)| sum + *tau * *factor);
     let by_u =
         symbolic::input_derivatives_of_expressions(model, &[power]).into_iter().next().unwrap_or_default();
-    let mixed = symbolic::force_derivatives(model, &by_u);
+    let mixed = symbolic::configuration_and_velocity_derivatives(model, &by_u);
     let transposed_matrix =
         |m: Matrix<'g>| (0..model.nv()).map(|k| m.iter().map(|row| row[k]).collect()).collect();
     InputHessian {
@@ -193,7 +193,7 @@ pub fn hessian_of_constraints<'g>(model: &Model<'g>) -> ConstraintHessian<'g> {
 
 /// Symmetrises the configuration block `m`. If axes rotate, the result of two successive displacements
 /// depends on their order; the mean of both orders is the second derivative along their sum.
-pub fn symmetrise_block<'g>(model: &Model<'g>, m: &mut Matrix<'g>) {
+pub fn symmetrise_configuration_block<'g>(model: &Model<'g>, m: &mut Matrix<'g>) {
     for chart in &model.charts {
         let block = match *chart {
             Chart::Plain(..) => continue,
@@ -213,21 +213,21 @@ pub fn symmetrise_block<'g>(model: &Model<'g>, m: &mut Matrix<'g>) {
 #[derive(Clone, Copy)]
 struct ColumnWithTwistChange<'g> {
     column: DofMotionChanges<'g>,
-    factor: Spatial<'g>,
+    factor: SpatialVector<'g>,
 }
 
 impl<'g> ColumnWithTwistChange<'g> {
     fn map(&self, f: &dyn Fn(Expr<'g>) -> Expr<'g>) -> ColumnWithTwistChange<'g> {
-        let factor = Spatial { linear: self.factor.linear.map(f), angular: self.factor.angular.map(f) };
+        let factor = SpatialVector { linear: self.factor.linear.map(f), angular: self.factor.angular.map(f) };
         ColumnWithTwistChange { column: self.column.map(f), factor }
     }
 }
 
 /// Sums over one link and its descendants, including sums of the virtual twists.
 struct SubtreeSums<'g> {
-    plain: Subtree<'g>,
+    plain: SubtreeMassAndWrench<'g>,
     /// Momentum `P = Σ I W` at the virtual twists.
-    momentum: Spatial<'g>,
+    momentum: SpatialVector<'g>,
     /// Moment `N = Σ Bᵀ W` of the virtual twists.
     moment: Vec3<'g>,
     /// Block of `Q` that corresponds to a tensor of inertia.
@@ -236,14 +236,14 @@ struct SubtreeSums<'g> {
 
 impl<'g> SubtreeSums<'g> {
     /// Returns the moment of `Q X + X ×* P`, which has no force.
-    fn inertia_rate_and_momentum_moment(&self, x: &Spatial<'g>) -> Vec3<'g> {
-        self.inertia_rate_moment(x)
+    fn inertia_rate_and_momentum_moment(&self, x: &SpatialVector<'g>) -> Vec3<'g> {
+        self.inertia_rate_wrench_moment(x)
             + x.angular.cross(self.momentum.angular)
             + x.linear.cross(self.momentum.linear)
     }
 
     /// Returns the moment of the wrench `Q X` for a spatial vector `X`.
-    fn inertia_rate_moment(&self, x: &Spatial<'g>) -> Vec3<'g> {
+    fn inertia_rate_wrench_moment(&self, x: &SpatialVector<'g>) -> Vec3<'g> {
         x.linear.cross(self.momentum.linear) + self.tensor * x.angular
     }
 }
@@ -251,24 +251,25 @@ impl<'g> SubtreeSums<'g> {
 fn subtree_sums_with_virtual_twists<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
-    (own, virtual_twists): (&[Spatial<'g>], &[Spatial<'g>]),
-    sums: Vec<Subtree<'g>>,
+    (own, virtual_twists): (&[SpatialVector<'g>], &[SpatialVector<'g>]),
+    sums: Vec<SubtreeMassAndWrench<'g>>,
 ) -> Vec<SubtreeSums<'g>> {
     let mut changes: Vec<Inertia<'g>> = Vec::with_capacity(joints.len());
-    let mut wrenches: Vec<[Spatial<'g>; 2]> = Vec::with_capacity(joints.len());
+    let mut wrenches: Vec<[SpatialVector<'g>; 2]> = Vec::with_capacity(joints.len());
     for ((link, own), w) in model.links.iter().zip(own).zip(virtual_twists) {
         let p = momentum(&link.inertia, w);
         let zero = Vec3::zero(model.graph);
         let n = sums_of_single_body(&link.inertia, own, 2.0).transposed_velocity_map(w);
         changes.push(inertia_rate(&link.inertia, w, p.linear));
-        wrenches.push([p, Spatial { linear: zero, angular: n }]);
+        wrenches.push([p, SpatialVector { linear: zero, angular: n }]);
     }
     for (k, joint) in joints.iter().enumerate().rev() {
         if let Some(parent) = joint.parent {
             changes[parent.0] = joint.add_inertia_to_parent(&changes[parent.0], &changes[k]);
             let [p, n] = wrenches[k];
             let above = wrenches[parent.0];
-            wrenches[parent.0] = [joint.add_wrench(&above[0], &p), joint.add_wrench(&above[1], &n)];
+            wrenches[parent.0] =
+                [joint.add_wrench_to_parent(&above[0], &p), joint.add_wrench_to_parent(&above[1], &n)];
         }
     }
     let parts = changes.into_iter().zip(wrenches);
@@ -285,7 +286,7 @@ fn subtree_sums_with_virtual_twists<'g>(
 
 /// Returns `(W×)ᵀ I + I (W×)` of a body with the momentum `p` at the twist `W = (a, b)`: zero mass, the first
 /// moment `−p`, and the tensor `h aᵀ + a hᵀ − 2 (h · a) + J [b]× − [b]× J`.
-fn inertia_rate<'g>(body: &Inertia<'g>, w: &Spatial<'g>, p: Vec3<'g>) -> Inertia<'g> {
+fn inertia_rate<'g>(body: &Inertia<'g>, w: &SpatialVector<'g>, p: Vec3<'g>) -> Inertia<'g> {
     let (h, a, b, j) = (body.moment, w.linear, w.angular, &body.tensor);
     let lever = (h.dot(a)) * 2.0;
     // Row i of J [b]× is (column i of J) × b.
@@ -312,9 +313,9 @@ struct HessianVisitor<'a, 'g> {
 }
 
 impl<'g> RootPropagationVisitor<'g> for HessianVisitor<'_, 'g> {
-    type Item = DofHessianContribution<'g>;
+    type Quantity = DofHessianContribution<'g>;
 
-    fn start(&mut self, dof: usize) -> DofHessianContribution<'g> {
+    fn initial_quantity_of_dof(&mut self, dof: usize) -> DofHessianContribution<'g> {
         let (own, sums) = (self.all[dof], &self.sums[self.links[dof]]);
         let changes = DofHessianContribution::new(&own, sums);
         let out = &mut self.out;
@@ -325,14 +326,14 @@ impl<'g> RootPropagationVisitor<'g> for HessianVisitor<'_, 'g> {
             out.add_entry(|h| &mut h.qq, other, &own, qq * 0.5);
             out.add_entry(|h| &mut h.qv, other, &own, vq);
             out.add_entry(|h| &mut h.qa, other, &own, aq);
-            let vv = sums.inertia_rate_moment(&own.column.subspace).dot(other.column.subspace.angular)
+            let vv = sums.inertia_rate_wrench_moment(&own.column.subspace).dot(other.column.subspace.angular)
                 + sums.momentum.linear.cross(own.column.subspace.angular).dot(other.column.subspace.linear);
             out.add_entry(|h| &mut h.vv, &own, other, vv);
         }
         changes
     }
 
-    fn visit(&mut self, group: &LaneGroup<DofHessianContribution<'g>>) {
+    fn process_transformed_group(&mut self, group: &LaneGroup<DofHessianContribution<'g>>) {
         for other in &self.columns[group.link] {
             let met =
                 group.item.hessian_entries_with_ancestor(&other.map(&|e| group.repeat_for_group_members(e)));
@@ -373,7 +374,7 @@ impl<'g> Hessian<'g> {
     }
 
     /// Adds another Hessian to this one, entry by entry.
-    fn add(&mut self, other: &Hessian<'g>) {
+    fn add_hessian(&mut self, other: &Hessian<'g>) {
         let blocks = [
             (&mut self.qq, &other.qq),
             (&mut self.qv, &other.qv),
@@ -392,33 +393,33 @@ impl<'g> Hessian<'g> {
 /// origin in the ancestor's axes. Moments are wrenches without force.
 struct DofHessianContribution<'g> {
     /// Wrench `I Ψ̈ + B Ψ̇ + S ×* F`: change with the displacement.
-    by_q: Spatial<'g>,
+    by_q: SpatialVector<'g>,
     /// Virtual wrench `I Ω + S ×* P`: change with the displacement.
-    factored: Spatial<'g>,
+    factored: SpatialVector<'g>,
     /// Moment `Bᵀ Ω + Q Ψ̇ + Ψ̇ ×* P + S ×* N`: change with the displacement.
     moment_by_q: Vec3<'g>,
     /// Wrench `I (Ψ̇ + Ṡ) + B S`: change with the velocity.
-    by_v: Spatial<'g>,
+    by_v: SpatialVector<'g>,
     /// Moment `Q S + S ×* P`: change with the velocity.
     moment_by_v: Vec3<'g>,
     /// Momentum `I S` at unit velocity of the degree of freedom.
-    momentum: Spatial<'g>,
+    momentum: SpatialVector<'g>,
 }
 
 impl<'g> DofHessianContribution<'g> {
     fn new(own: &ColumnWithTwistChange<'g>, sums: &SubtreeSums<'g>) -> DofHessianContribution<'g> {
         let (column, plain) = (&own.column, &sums.plain);
         let s = &column.subspace;
-        let momentum_of_twist = |x: &Spatial<'g>| momentum(&plain.inertia, x);
+        let momentum_of_twist = |x: &SpatialVector<'g>| momentum(&plain.inertia, x);
         DofHessianContribution {
             by_q: momentum_of_twist(&column.second)
-                .plus(&plain.map(&column.first))
+                .plus(&plain.velocity_map(&column.first))
                 .plus(&analytic::cross_force(s, &plain.wrench)),
             factored: momentum_of_twist(&own.factor).plus(&analytic::cross_force(s, &sums.momentum)),
             moment_by_q: plain.transposed_velocity_map(&own.factor)
                 + sums.inertia_rate_and_momentum_moment(&column.first)
                 + s.angular.cross(sums.moment),
-            by_v: momentum_of_twist(&column.rate).plus(&plain.map(s)),
+            by_v: momentum_of_twist(&column.rate).plus(&plain.velocity_map(s)),
             moment_by_v: sums.inertia_rate_and_momentum_moment(s),
             momentum: momentum_of_twist(s),
         }

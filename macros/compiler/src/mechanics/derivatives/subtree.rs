@@ -7,31 +7,34 @@
 
 use super::super::crba;
 use crate::expr::{Mat3, Sym3, Vec3};
-use crate::kinematics::{Joint, Spatial};
+use crate::kinematics::{Joint, SpatialVector};
 use crate::mechanism::{Inertia, Model};
 
 /// Sums of mass properties and wrenches over one link and its descendants.
 #[derive(Clone, Copy)]
-pub struct Subtree<'g> {
+pub struct SubtreeMassAndWrench<'g> {
     /// Mass properties of the link and its descendants, about the link's origin in its axes.
     pub inertia: Inertia<'g>,
     /// Wrench that produces the accelerations of the link and its descendants, about the link's origin in its
     /// axes.
-    pub wrench: Spatial<'g>,
+    pub wrench: SpatialVector<'g>,
     /// Multiple of `p`; the factor is the argument `multiple` of `subtrees`.
     momentum: Vec3<'g>,
     /// Multiple of `K`, with the same factor as that of `p`.
     moments: Mat3<'g>,
 }
 
-impl<'g> Subtree<'g> {
+impl<'g> SubtreeMassAndWrench<'g> {
     /// Returns the velocity map of a motion `x`: a force and a moment.
-    pub fn map(&self, x: &Spatial<'g>) -> Spatial<'g> {
-        Spatial { linear: x.angular.cross(self.momentum), angular: minus_trace(&self.moments) * -x.angular }
+    pub fn velocity_map(&self, x: &SpatialVector<'g>) -> SpatialVector<'g> {
+        SpatialVector {
+            linear: x.angular.cross(self.momentum),
+            angular: minus_trace(&self.moments) * -x.angular,
+        }
     }
 
     /// Returns the transposed velocity map of `x`: a moment without force.
-    pub fn transposed_velocity_map(&self, x: &Spatial<'g>) -> Vec3<'g> {
+    pub fn transposed_velocity_map(&self, x: &SpatialVector<'g>) -> Vec3<'g> {
         self.momentum.cross(x.linear) + minus_trace(&self.moments.transpose()) * -x.angular
     }
 }
@@ -47,13 +50,13 @@ fn minus_trace<'g>(k: &Mat3<'g>) -> Mat3<'g> {
 pub fn subtree_sums<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
-    twists: &[Spatial<'g>],
-    wrenches: &[Spatial<'g>],
+    twists: &[SpatialVector<'g>],
+    wrenches: &[SpatialVector<'g>],
     multiple: f64,
-) -> Vec<Subtree<'g>> {
+) -> Vec<SubtreeMassAndWrench<'g>> {
     let inertias = crba::composite_inertias(model, joints);
     let bodies = model.links.iter().map(|link| &link.inertia);
-    let mut sums: Vec<Subtree<'g>> =
+    let mut sums: Vec<SubtreeMassAndWrench<'g>> =
         bodies.zip(twists).map(|(body, twist)| sums_of_single_body(body, twist, multiple)).collect();
     for (sum, (inertia, wrench)) in sums.iter_mut().zip(inertias.into_iter().zip(wrenches)) {
         (sum.inertia, sum.wrench) = (inertia, *wrench);
@@ -62,12 +65,12 @@ pub fn subtree_sums<'g>(
         if let Some(parent) = joint.parent {
             let child = sums[k];
             let sum = &mut sums[parent.0];
-            sum.wrench = joint.add_wrench(&sum.wrench, &child.wrench);
-            let momentum = joint.rotation.to_parent(child.momentum);
+            sum.wrench = joint.add_wrench_to_parent(&sum.wrench, &child.wrench);
+            let momentum = joint.rotation.vector_in_parent_axes(child.momentum);
             let moments = joint.rotation.tensor_in_parent_axes(child.moments)
                 + outer_product(momentum, joint.translation);
-            sum.momentum += momentum.map(|c| joint.lane_sum(c));
-            sum.moments = sum.moments + Mat3(moments.0.map(|row| row.map(|c| joint.lane_sum(c))));
+            sum.momentum += momentum.map(|c| joint.sum_over_limb_lanes(c));
+            sum.moments = sum.moments + Mat3(moments.0.map(|row| row.map(|c| joint.sum_over_limb_lanes(c))));
         }
     }
     sums
@@ -75,14 +78,18 @@ pub fn subtree_sums<'g>(
 
 /// Returns the sums of a single body, without wrench. With its first moment `h` and `J = Σ m r rᵀ`:
 /// `p = m v + w × h`, `K = v hᵀ + [w]× J`.
-pub fn sums_of_single_body<'g>(body: &Inertia<'g>, twist: &Spatial<'g>, multiple: f64) -> Subtree<'g> {
+pub fn sums_of_single_body<'g>(
+    body: &Inertia<'g>,
+    twist: &SpatialVector<'g>,
+    multiple: f64,
+) -> SubtreeMassAndWrench<'g> {
     let second = second_moments(&body.tensor);
     let (mass, h) = (body.mass * multiple, body.moment.map(|c| c * multiple));
     let j = Mat3::from_fn(|i, k| second.entry(i, k) * multiple);
     let zero = Vec3::zero(body.mass.graph());
-    Subtree {
+    SubtreeMassAndWrench {
         inertia: *body,
-        wrench: Spatial { linear: zero, angular: zero },
+        wrench: SpatialVector { linear: zero, angular: zero },
         momentum: twist.linear * mass + twist.angular.cross(h),
         moments: outer_product(twist.linear, h) + Mat3::skew(twist.angular) * j,
     }

@@ -10,13 +10,13 @@ use crate::mechanics::passive::passive_forces;
 use crate::mechanism::{Model, Quantity};
 
 /// Returns the derivatives of expressions with respect to configuration and velocity.
-pub fn force_derivatives<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> ForceDerivatives<'g> {
+pub fn configuration_and_velocity_derivatives<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> ForceDerivatives<'g> {
     ForceDerivatives { by_q: configuration_derivatives(model, e), by_v: velocity_derivatives(model, e) }
 }
 
 /// Returns the derivatives of springs, dashpots, friction, potentials and loads.
 pub fn passive_force_state_derivatives<'g>(model: &Model<'g>) -> ForceDerivatives<'g> {
-    force_derivatives(model, &passive_forces(model, true))
+    configuration_and_velocity_derivatives(model, &passive_forces(model, true))
 }
 
 /// Adds the derivatives of springs, dashpots, friction, potentials and loads.

@@ -9,14 +9,14 @@
 
 use super::super::crba::Matrix;
 use super::super::ldl::elimination_order;
-use super::factor::Factor;
+use super::factor::MatrixFactorisation;
 use crate::expr::Expr;
 use crate::kinematics::Joint;
 
 /// Partition of the velocities into those of the trunk and those of each limb, which the mass matrix couples
 /// only through the trunk.
 #[derive(Clone, Debug)]
-pub struct Trunk {
+pub struct TrunkLimbPartition {
     /// Velocities of the trunk, from the leaves to the root.
     pub velocities: Vec<usize>,
     limbs: Vec<Limb>,
@@ -31,7 +31,7 @@ struct Limb {
     identical: usize,
 }
 
-impl Trunk {
+impl TrunkLimbPartition {
     /// Returns for each velocity whether its link, or a descendant of the link, has more than one child. A
     /// group of limbs in SIMD lanes is not divided further.
     pub fn branching_descendant_flags(joints: &[Joint<'_>], nv: usize) -> Vec<bool> {
@@ -57,7 +57,7 @@ impl Trunk {
 
     /// Returns the partition with the given trunk, or `None` if there is only one limb or the mass matrix
     /// couples different limbs.
-    pub fn new(joints: &[Joint<'_>], mass: &Matrix<'_>, is_trunk: &[bool]) -> Option<Trunk> {
+    pub fn new(joints: &[Joint<'_>], mass: &Matrix<'_>, is_trunk: &[bool]) -> Option<TrunkLimbPartition> {
         let order = elimination_order(joints, mass.len());
         let mut limbs: Vec<Limb> = Vec::new();
         let mut limb_of_joint: Vec<Option<usize>> = Vec::with_capacity(joints.len());
@@ -88,12 +88,12 @@ impl Trunk {
         let velocities = order.into_iter().filter(|k| is_trunk[*k]).collect();
         let several = limbs.iter().map(|limb| limb.identical).sum::<usize>() > 1;
         (several && (0..n).all(|i| (0..i).all(|j| has_no_mass_coupling(i, j))))
-            .then_some(Trunk { velocities, limbs })
+            .then_some(TrunkLimbPartition { velocities, limbs })
     }
 
     /// Returns the partition in which all velocities belong to the trunk.
-    pub fn trunk_of_all_velocities(joints: &[Joint<'_>], nv: usize) -> Trunk {
-        Trunk { velocities: elimination_order(joints, nv), limbs: Vec::new() }
+    pub fn partition_with_trunk_only(joints: &[Joint<'_>], nv: usize) -> TrunkLimbPartition {
+        TrunkLimbPartition { velocities: elimination_order(joints, nv), limbs: Vec::new() }
     }
 
     /// Returns the velocities of each limb in ascending order.
@@ -116,11 +116,11 @@ impl Limb {
 
 /// Returns the terms of `M⁻¹` that remain to be computed if runtime loops do the remainder: `C⁻¹` in the
 /// columns of the limbs, and the trunk's columns of `M` in the order of the trunk's velocities.
-pub fn inverse_terms_for_runtime_loops<'g>(mass: &Matrix<'g>, trunk: &Trunk) -> [Matrix<'g>; 2] {
+pub fn inverse_terms_for_runtime_loops<'g>(mass: &Matrix<'g>, trunk: &TrunkLimbPartition) -> [Matrix<'g>; 2] {
     let zero_row = |row: &Vec<Expr<'g>>| row.iter().map(|e| e.zero()).collect();
     let mut inverses: Matrix<'g> = mass.iter().map(zero_row).collect();
     for limb in &trunk.limbs {
-        let inverse = Factor::factorise_from_leaves_to_root(mass, &limb.velocities).inverse();
+        let inverse = MatrixFactorisation::factorise_from_leaves_to_root(mass, &limb.velocities).inverse();
         for &i in &limb.velocities {
             inverses[i].clone_from_slice(&inverse[i]);
         }
@@ -130,23 +130,24 @@ pub fn inverse_terms_for_runtime_loops<'g>(mass: &Matrix<'g>, trunk: &Trunk) -> 
 }
 
 /// Inverse mass matrix `M⁻¹`, computed by blocks of the trunk and the limbs.
-pub struct Inverse<'a, 'g> {
-    trunk: &'a Trunk,
+pub struct BlockInverseMassMatrix<'a, 'g> {
+    trunk: &'a TrunkLimbPartition,
     /// `C⁻¹` among the limbs, `S⁻¹` in the trunk, `W` in the rows of the limbs and the columns of the trunk.
     parts: Matrix<'g>,
 }
 
-impl<'a, 'g> Inverse<'a, 'g> {
+impl<'a, 'g> BlockInverseMassMatrix<'a, 'g> {
     /// Computes the blocks of the inverse mass matrix for trunk and limbs.
-    pub fn new(mass: &Matrix<'g>, trunk: &'a Trunk) -> Inverse<'a, 'g> {
+    pub fn new(mass: &Matrix<'g>, trunk: &'a TrunkLimbPartition) -> BlockInverseMassMatrix<'a, 'g> {
         let n = mass.len();
         let Some(zero) = mass.first().and_then(|row| row.first()).map(|e| e.zero()) else {
-            return Inverse { trunk, parts: Vec::new() };
+            return BlockInverseMassMatrix { trunk, parts: Vec::new() };
         };
         let mut parts = vec![vec![zero; n]; n];
         let mut rest = mass.clone();
         for limb in &trunk.limbs {
-            let inverse = Factor::factorise_from_leaves_to_root(mass, &limb.velocities).inverse();
+            let inverse =
+                MatrixFactorisation::factorise_from_leaves_to_root(mass, &limb.velocities).inverse();
             for &i in &limb.velocities {
                 parts[i].clone_from_slice(&inverse[i]);
                 for &t in &trunk.velocities {
@@ -161,11 +162,11 @@ impl<'a, 'g> Inverse<'a, 'g> {
                 }
             }
         }
-        let inverse = Factor::factorise_from_leaves_to_root(&rest, &trunk.velocities).inverse();
+        let inverse = MatrixFactorisation::factorise_from_leaves_to_root(&rest, &trunk.velocities).inverse();
         for &t in &trunk.velocities {
             parts[t].clone_from_slice(&inverse[t]);
         }
-        Inverse { trunk, parts }
+        BlockInverseMassMatrix { trunk, parts }
     }
 
     /// Returns the product `M⁻¹ r` from the blocks for trunk and limbs.

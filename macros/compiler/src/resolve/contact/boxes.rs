@@ -14,7 +14,9 @@
 //! duplicate is the size of the boxes.
 
 use super::cylinders::{Drum, unbounded_cylinder_box_contacts};
-use super::geometry::{PointContact, clamp, indicator_of_positive, nearest, rim};
+use super::geometry::{
+    PointContact, clamp, closest_positions_on_segments, directions_to_rim_points, indicator_of_positive,
+};
 use super::pair::{SurfacePair, sphere_contact};
 use super::surface::SurfaceForm;
 use crate::expr::{Expr, Extreme, Function, Vec3};
@@ -101,16 +103,17 @@ fn scale_selector<'g>(which: [Expr<'g>; 3], factor: Expr<'g>) -> [Expr<'g>; 3] {
 impl<'g> SurfacePair<'_, 'g> {
     /// Returns the contacts of a sphere, a capsule, a cylinder or a box with a box. `c` leads from the centre
     /// of the latter to that of the former.
-    pub(super) fn box_contacts(&self, lengths: &[Expr<'g>; 3], c: Vec3<'g>) -> Vec<PointContact<'g>> {
-        let g = self.graph();
-        let block = |lengths: &[Expr<'g>; 3], center, rotate: &dyn Fn(Vec3<'g>) -> Vec3<'g>| OrientedBox {
-            axes: std::array::from_fn(|k| rotate(Vec3::coordinate_axis(g, k))),
-            half: lengths.map(|length| length * 0.5),
-            center,
-        };
+    pub(super) fn contacts_with_box(&self, lengths: &[Expr<'g>; 3], c: Vec3<'g>) -> Vec<PointContact<'g>> {
+        let g = self.expression_graph();
+        let oriented_box_from_lengths =
+            |lengths: &[Expr<'g>; 3], center, rotate: &dyn Fn(Vec3<'g>) -> Vec3<'g>| OrientedBox {
+                axes: std::array::from_fn(|k| rotate(Vec3::coordinate_axis(g, k))),
+                half: lengths.map(|length| length * 0.5),
+                center,
+            };
         let (first_surface_to_common_axes, second_surface_to_common_axes) =
-            (|v| self.first_direction(v).value, |v| self.direction_of_second_body(v).value);
-        let target = block(lengths, Vec3::zero(g), &second_surface_to_common_axes);
+            (|v| self.direction_of_first_body(v).value, |v| self.direction_of_second_body(v).value);
+        let target = oriented_box_from_lengths(lengths, Vec3::zero(g), &second_surface_to_common_axes);
         let sphere_box_contact = |radius: Expr<'g>, place: Vec3<'g>| {
             let inner = (0..3).fold(Vec3::zero(g), |sum, k| {
                 sum + target.axes[k] * clamp(target.axes[k].dot(place), target.half[k])
@@ -134,16 +137,19 @@ impl<'g> SurfacePair<'_, 'g> {
                 let ends = [-1.0, 1.0].into_iter().filter_map(contact_of_end_sphere);
                 ends.chain(capsule_axis_contacts(*radius, (own, reach), &target, c)).collect()
             }
-            SurfaceForm::Cuboid(own) => {
-                box_contact_candidates(&block(own, c, &first_surface_to_common_axes), &target)
-            }
+            SurfaceForm::Cuboid(own) => box_contact_candidates(
+                &oriented_box_from_lengths(own, c, &first_surface_to_common_axes),
+                &target,
+            ),
             SurfaceForm::Cylinder(radius, axis) => {
                 unbounded_cylinder_box_contacts(*radius, first_surface_to_common_axes(*axis), &target, c)
             }
             SurfaceForm::Drum(radius, length, axis) => {
                 let drum =
                     Drum { radius: *radius, half: *length * 0.5, axis: first_surface_to_common_axes(*axis) };
-                drum.box_contacts(&target, c, &|normal| rim(*axis, normal, &first_surface_to_common_axes))
+                drum.contacts_with_box(&target, c, &|normal| {
+                    directions_to_rim_points(*axis, normal, &first_surface_to_common_axes)
+                })
             }
             _ => Vec::new(),
         }
@@ -187,8 +193,9 @@ impl<'g> BoxPair<'g> {
     fn face_of_largest_separation(&self) -> (SeparatingDirection<'g>, Expr<'g>) {
         let (zero, one) = (self.size.zero(), self.size.num(1.0));
         let [first, second] = [false, true].map(|is_second| self.best_separating_face(is_second));
-        let sum = |block: &OrientedBox<'g>| block.half.into_iter().fold(zero, |sum, half| sum + half);
-        let size_difference = sum(&self.a) - sum(&self.b);
+        let sum_of_half_lengths =
+            |block: &OrientedBox<'g>| block.half.into_iter().fold(zero, |sum, half| sum + half);
+        let size_difference = sum_of_half_lengths(&self.a) - sum_of_half_lengths(&self.b);
         let same = one - indicator_of_positive(absolute(size_difference) - self.size * TIE_TOLERANCE);
         let c = self.center_offset();
         let lower = -(c[0] * TIE_BREAK[0] + c[1] * TIE_BREAK[1] + c[2] * TIE_BREAK[2]);
@@ -205,7 +212,7 @@ impl<'g> BoxPair<'g> {
         let (zero, one) = (self.size.zero(), self.size.num(1.0));
         let c = self.center_offset();
         let (own, other) = if is_second { (&self.b, &self.a) } else { (&self.a, &self.b) };
-        let distance = |k: usize| {
+        let separation_along_axis = |k: usize| {
             let along: [Expr<'g>; 3] = std::array::from_fn(|i| match is_second {
                 true => self.cosines[i][k],
                 false => self.cosines[k][i],
@@ -213,18 +220,17 @@ impl<'g> BoxPair<'g> {
             let reach = (0..3).fold(zero, |sum, k| sum + other.half[k] * absolute(along[k]));
             absolute(own.axes[k].dot(c)) - own.half[k] - reach
         };
-        let unit_vector_of_axis = |k: usize| std::array::from_fn(|i| if i == k { one } else { zero });
+        let selector_of_axis = |k: usize| std::array::from_fn(|i| if i == k { one } else { zero });
         let mut best = SeparatingDirection {
-            distance: distance(0),
-            first: unit_vector_of_axis(0),
-            second: unit_vector_of_axis(0),
+            distance: separation_along_axis(0),
+            first: selector_of_axis(0),
+            second: selector_of_axis(0),
         };
         for k in [1, 2] {
-            let found = distance(k);
+            let found = separation_along_axis(k);
             let better = indicator_of_positive(found - best.distance - self.size * TIE_TOLERANCE);
-            let which = std::array::from_fn(|i| {
-                select_by_indicator(better, unit_vector_of_axis(k)[i], best.first[i])
-            });
+            let which =
+                std::array::from_fn(|i| select_by_indicator(better, selector_of_axis(k)[i], best.first[i]));
             let distance = select_by_indicator(better, found, best.distance);
             best = SeparatingDirection { distance, first: which, second: which };
         }
@@ -252,15 +258,15 @@ impl<'g> BoxPair<'g> {
                 let better = indicator_of_positive(distance - best.distance - self.size * TIE_TOLERANCE)
                     * indicator_of_positive(square - zero.num(PARALLEL));
                 let other = better.num(1.0) - better;
-                let selector_choosing_index = |known: [Expr<'g>; 3], k: usize| {
+                let selector_choosing_index_if_better = |known: [Expr<'g>; 3], k: usize| {
                     let mut which = scale_selector(known, other);
                     which[k] += better;
                     which
                 };
                 best = SeparatingDirection {
                     distance: select_by_indicator(better, distance, best.distance),
-                    first: selector_choosing_index(best.first, i),
-                    second: selector_choosing_index(best.second, j),
+                    first: selector_choosing_index_if_better(best.first, i),
+                    second: selector_choosing_index_if_better(best.second, j),
                 };
             }
         }
@@ -294,7 +300,7 @@ impl<'g> BoxPair<'g> {
         let reach =
             [select_one_of_three(&edge.first, self.a.half), select_one_of_three(&edge.second, self.b.half)];
         let offset = c + on_a - on_b;
-        let (near, far) = nearest(offset, (own, reach[0]), (axis, reach[1]));
+        let (near, far) = closest_positions_on_segments(offset, (own, reach[0]), (axis, reach[1]));
         let separation = offset + own * near - axis * far;
         let excess = separation.norm() - absolute(edge.distance);
         PointContact {
@@ -319,7 +325,7 @@ pub(super) struct Face<'g> {
 impl<'g> Face<'g> {
     /// Returns the face of a box normal to the selected axis, on the side of `c`, a position relative to its
     /// centre.
-    pub(super) fn facing(
+    pub(super) fn face_on_side_of_position(
         holder: &OrientedBox<'g>,
         which: &[Expr<'g>; 3],
         c: Vec3<'g>,
@@ -334,7 +340,7 @@ impl<'g> Face<'g> {
     }
 
     /// Returns the components of a vector along the normal and the sides.
-    pub(super) fn components(&self, v: Vec3<'g>) -> [Expr<'g>; 3] {
+    pub(super) fn components_along_face_axes(&self, v: Vec3<'g>) -> [Expr<'g>; 3] {
         self.axes.map(|axis| v.dot(axis))
     }
 
@@ -359,11 +365,11 @@ impl<'g> Face<'g> {
     /// Returns a contact midway between the face and a position relative to the centre of the box, at this
     /// distance from the face.
     fn contact_midway_to_face(&self, gap: Expr<'g>, place: Vec3<'g>, distance: Expr<'g>) -> PointContact<'g> {
-        self.contact(gap, place - self.axes[0] * (distance * 0.5))
+        self.contact_at_position(gap, place - self.axes[0] * (distance * 0.5))
     }
 
     /// Returns a contact at a position relative to the centre of the box.
-    pub(super) fn contact(&self, gap: Expr<'g>, place: Vec3<'g>) -> PointContact<'g> {
+    pub(super) fn contact_at_position(&self, gap: Expr<'g>, place: Vec3<'g>) -> PointContact<'g> {
         let [normal, first, second] = self.axes;
         let axes = [("normal", normal), ("first", first), ("second", second)];
         PointContact { gap, point: place, axes, conditions: Vec::new() }
@@ -382,7 +388,7 @@ fn face_contacts<'g>(
 ) -> Vec<PointContact<'g>> {
     let one = size.num(1.0);
     let c = other.center - holder.center;
-    let face = Face::facing(holder, which, c, size);
+    let face = Face::face_on_side_of_position(holder, which, c, size);
     // The face of the other box that is opposite to this one.
     let cosines = other.axes.map(|axis| axis.dot(face.axes[0]));
     let [x, y, z] = cosines.map(absolute);
@@ -396,7 +402,11 @@ fn face_contacts<'g>(
     let [h1, h2] = [0, 1].map(|k| select_one_of_three(&side_axes[k], other.half));
     let (d1, d2) =
         (select_axis(&side_axes[0], &other.axes) * h1, select_axis(&side_axes[1], &other.axes) * h2);
-    let (f, e1, e2) = (face.components(middle), face.components(d1), face.components(d2));
+    let (f, e1, e2) = (
+        face.components_along_face_axes(middle),
+        face.components_along_face_axes(d1),
+        face.components_along_face_axes(d2),
+    );
     let [height, hu, hw] = face.half;
     let smallest = minimum(h1, h2);
     let mut points = Vec::new();
@@ -446,13 +456,14 @@ pub(super) fn capsule_axis_contacts<'g>(
     let size = block.half.into_iter().fold(reach + radius, |sum, half| sum + half);
     let cosines = block.axes.map(|axis| own.dot(axis));
     let center_offsets = block.axes.map(|axis| axis.dot(c));
-    let unit_vector_of_axis = |k: usize| std::array::from_fn(|i| if i == k { one } else { zero });
-    let distance = |k: usize| absolute(center_offsets[k]) - block.half[k] - reach * absolute(cosines[k]);
-    let (mut face_distance, mut which) = (distance(0), unit_vector_of_axis(0));
+    let selector_of_axis = |k: usize| std::array::from_fn(|i| if i == k { one } else { zero });
+    let separation_along_axis =
+        |k: usize| absolute(center_offsets[k]) - block.half[k] - reach * absolute(cosines[k]);
+    let (mut face_distance, mut which) = (separation_along_axis(0), selector_of_axis(0));
     for k in [1, 2] {
-        let better = indicator_of_positive(distance(k) - face_distance - size * TIE_TOLERANCE);
-        face_distance = select_by_indicator(better, distance(k), face_distance);
-        which = std::array::from_fn(|i| select_by_indicator(better, unit_vector_of_axis(k)[i], which[i]));
+        let better = indicator_of_positive(separation_along_axis(k) - face_distance - size * TIE_TOLERANCE);
+        face_distance = select_by_indicator(better, separation_along_axis(k), face_distance);
+        which = std::array::from_fn(|i| select_by_indicator(better, selector_of_axis(k)[i], which[i]));
     }
     let (mut edge_distance, mut edge) = (-size, [zero; 3]);
     for j in 0..3 {
@@ -465,25 +476,30 @@ pub(super) fn capsule_axis_contacts<'g>(
         let better = indicator_of_positive(found - edge_distance - size * TIE_TOLERANCE)
             * indicator_of_positive(square - one * PARALLEL);
         edge_distance = select_by_indicator(better, found, edge_distance);
-        edge = std::array::from_fn(|i| select_by_indicator(better, unit_vector_of_axis(j)[i], edge[i]));
+        edge = std::array::from_fn(|i| select_by_indicator(better, selector_of_axis(j)[i], edge[i]));
     }
     let by_edges = indicator_of_positive(edge_distance - face_distance - size * TIE_TOLERANCE);
-    let face = Face::facing(block, &which, c, size);
-    let (start, direction) = (face.components(c), face.components(own * reach));
+    let face = Face::face_on_side_of_position(block, &which, c, size);
+    let (start, direction) =
+        (face.components_along_face_axes(c), face.components_along_face_axes(own * reach));
     let [from, to] = face.clip_line_to_face_sides(&start, &direction);
     let outside = minimum((from - to) * reach, size);
     let mut points = Vec::new();
     for t in [minimum(from, one), maximum(to, -one)] {
         let gap = maximum(start[0] + direction[0] * t - face.half[0] - radius, outside);
         let gap = select_by_indicator(by_edges, maximum(gap, edge_distance - face_distance), gap);
-        points.push(face.contact(gap, own * (reach * t) - face.axes[0] * radius));
+        points.push(face.contact_at_position(gap, own * (reach * t) - face.axes[0] * radius));
     }
     let axis = select_axis(&edge, &block.axes);
     let across = own.cross(axis);
     let length = maximum(across.dot(across), one * PARALLEL).sqrt();
     let normal = across * (c.dot(across).apply_function(Function::Signum) / length);
     let middle = farthest_edge_center(block, &edge, normal);
-    let (near, far) = nearest(c - middle, (own, reach), (axis, select_one_of_three(&edge, block.half)));
+    let (near, far) = closest_positions_on_segments(
+        c - middle,
+        (own, reach),
+        (axis, select_one_of_three(&edge, block.half)),
+    );
     // If an end of the axis or of the edge is nearest, it touches as a sphere or as a corner.
     let separation = c - middle + own * near - axis * far;
     let length = separation.norm();

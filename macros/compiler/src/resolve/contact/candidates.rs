@@ -1,7 +1,9 @@
 //! Points where a pair of surfaces may touch.
 
-use super::cylinders::{Drum, capsule_on_pipe};
-use super::geometry::{FLAT_RIM, PointContact, clamp, nearest, rim};
+use super::cylinders::{Drum, capsule_unbounded_cylinder_contacts};
+use super::geometry::{
+    FLAT_RIM, PointContact, clamp, closest_positions_on_segments, directions_to_rim_points,
+};
 use super::hull::sphere_on_hull;
 use super::pair::{SurfacePair, sphere_contact, support_point};
 use super::surface::SurfaceForm;
@@ -12,15 +14,15 @@ use crate::kinematics::perpendicular_directions;
 impl<'g> SurfacePair<'_, 'g> {
     /// Returns the points where a pair may touch.
     pub(super) fn candidate_contacts(&self) -> Vec<PointContact<'g>> {
-        let g = self.graph();
-        let first_surface_to_common_axes = |v| self.first_direction(v).value;
+        let g = self.expression_graph();
+        let first_surface_to_common_axes = |v| self.direction_of_first_body(v).value;
         let second_surface_to_common_axes = |v| self.direction_of_second_body(v).value;
         let c = self.center.value - self.base.value;
         if let SurfaceForm::Terrain(terrain) = &self.b.form {
             return self.terrain_contacts(terrain, c, &second_surface_to_common_axes);
         }
         if let SurfaceForm::Cuboid(lengths) = &self.b.form {
-            return self.box_contacts(lengths, c);
+            return self.contacts_with_box(lengths, c);
         }
         if let (SurfaceForm::Sphere(radius), SurfaceForm::Hull(hull)) = (&self.a.form, &self.b.form) {
             let axes = std::array::from_fn(|k| second_surface_to_common_axes(Vec3::coordinate_axis(g, k)));
@@ -28,7 +30,7 @@ impl<'g> SurfacePair<'_, 'g> {
             return contact.into_iter().collect();
         }
         let SurfaceForm::Plane(n) = &self.b.form else {
-            return self.curved_contacts(c, &second_surface_to_common_axes);
+            return self.contacts_with_curved_surface(c, &second_surface_to_common_axes);
         };
         let [(first, e1), (second, e2)] =
             perpendicular_directions(*n).map(|(word, e)| (word, second_surface_to_common_axes(e)));
@@ -49,7 +51,7 @@ impl<'g> SurfacePair<'_, 'g> {
                 hull.vertices.iter().map(|p| contact_at_point(first_surface_to_common_axes(*p))).collect()
             }
             SurfaceForm::Drum(radius, length, axis) => {
-                let rim = rim(*axis, normal, &first_surface_to_common_axes);
+                let rim = directions_to_rim_points(*axis, normal, &first_surface_to_common_axes);
                 let ends = [-half, half].map(|side| first_surface_to_common_axes(*axis * (*length * side)));
                 let sides = ends
                     .into_iter()
@@ -79,8 +81,8 @@ impl<'g> SurfacePair<'_, 'g> {
         c: Vec3<'g>,
         second_surface_to_common_axes: &dyn Fn(Vec3<'g>) -> Vec3<'g>,
     ) -> Vec<PointContact<'g>> {
-        let g = self.graph();
-        let first_surface_to_common_axes = |v| self.first_direction(v).value;
+        let g = self.expression_graph();
+        let first_surface_to_common_axes = |v| self.direction_of_first_body(v).value;
         let (radius, places) = match &self.a.form {
             SurfaceForm::Point => (g.zero(), vec![Vec3::zero(g)]),
             SurfaceForm::Sphere(radius) => (*radius, vec![Vec3::zero(g)]),
@@ -99,7 +101,7 @@ impl<'g> SurfacePair<'_, 'g> {
         let axes: [Vec3<'g>; 3] =
             std::array::from_fn(|k| second_surface_to_common_axes(Vec3::coordinate_axis(g, k)));
         let touches = places.into_iter().map(|place| {
-            let contact = terrain.contact(
+            let contact = terrain.sphere_contact(
                 radius,
                 Vec3(axes.map(|axis| axis.dot(c + place))),
                 second_surface_to_common_axes,
@@ -111,18 +113,18 @@ impl<'g> SurfacePair<'_, 'g> {
 
     /// Returns the contacts of a sphere, a point or a capsule with a curved surface. Two capsules touch where
     /// their axes are closest, and at the spheres at their ends, which carry parallel capsules.
-    fn curved_contacts(
+    fn contacts_with_curved_surface(
         &self,
         c: Vec3<'g>,
         second_surface_to_common_axes: &dyn Fn(Vec3<'g>) -> Vec3<'g>,
     ) -> Vec<PointContact<'g>> {
-        let g = self.graph();
+        let g = self.expression_graph();
         let half = g.num(0.5);
         let (radius, own) = match &self.a.form {
             SurfaceForm::Point => (g.zero(), None),
             SurfaceForm::Sphere(radius) => (*radius, None),
             SurfaceForm::Capsule(radius, length, axis) => {
-                (*radius, Some((self.first_direction(*axis).value, *length * half)))
+                (*radius, Some((self.direction_of_first_body(*axis).value, *length * half)))
             }
             _ => return Vec::new(),
         };
@@ -139,7 +141,7 @@ impl<'g> SurfacePair<'_, 'g> {
                 let own_ends =
                     [-own_reach, own_reach].map(|near| (near, clamp(axis.dot(c + own * near), reach)));
                 let other_ends = [-reach, reach].map(|far| (clamp(own.dot(axis * far - c), own_reach), far));
-                let places = [nearest(c, (own, own_reach), (axis, reach))].into_iter();
+                let places = [closest_positions_on_segments(c, (own, own_reach), (axis, reach))].into_iter();
                 let touches = places.chain(own_ends).chain(other_ends).filter_map(|(near, far)| {
                     let contact = sphere_contact(
                         radius,
@@ -162,7 +164,14 @@ impl<'g> SurfacePair<'_, 'g> {
             SurfaceForm::Cylinder(_, axis) if own.is_some() => {
                 let axis = second_surface_to_common_axes(*axis);
                 let contacts = own.map(|own| {
-                    capsule_on_pipe(radius, own, &self.b.form, axis, c, second_surface_to_common_axes)
+                    capsule_unbounded_cylinder_contacts(
+                        radius,
+                        own,
+                        &self.b.form,
+                        axis,
+                        c,
+                        second_surface_to_common_axes,
+                    )
                 });
                 return contacts.unwrap_or_default();
             }
@@ -175,7 +184,7 @@ impl<'g> SurfacePair<'_, 'g> {
 /// Returns the corners of a box with these edge lengths, relative to its centre.
 fn corners_of_box<'g>(lengths: &[Expr<'g>; 3]) -> [Vec3<'g>; 8] {
     std::array::from_fn(|k| {
-        let side = |axis: usize| if k >> axis & 1 == 0 { -0.5 } else { 0.5 };
-        Vec3(std::array::from_fn(|axis| lengths[axis] * side(axis)))
+        let corner_fraction_along_axis = |axis: usize| if k >> axis & 1 == 0 { -0.5 } else { 0.5 };
+        Vec3(std::array::from_fn(|axis| lengths[axis] * corner_fraction_along_axis(axis)))
     })
 }

@@ -24,7 +24,7 @@ pub(super) struct ContactCoefficients<'g> {
 
 impl<'g> ContactCoefficients<'g> {
     /// Returns a contact with these coefficients. `turns` is true for a gap that is an angle.
-    pub(super) fn contact(
+    pub(super) fn contact_with_coefficients(
         self,
         name: String,
         (gap, turns): (Expr<'g>, bool),
@@ -43,10 +43,11 @@ pub(super) fn read_contact_coefficients<'g>(
     cx: &mut Diagnostics,
 ) -> Option<ContactCoefficients<'g>> {
     let (name, given) = (&contact.name.text, &contact.arguments);
-    let mut read =
-        |key, what| resolve_contact_coefficient(scope, given.get(key), what, Rule::NotNegative, name, cx);
+    let mut read = |key, what| {
+        resolve_contact_coefficient(scope, given.expression_of_key(key), what, Rule::NotNegative, name, cx)
+    };
     let friction = read(Key::Friction, "friction");
-    let stiction = match given.get(Key::StaticFriction) {
+    let stiction = match given.expression_of_key(Key::StaticFriction) {
         Some(_) => read(Key::StaticFriction, "static friction"),
         None => friction,
     };
@@ -54,7 +55,10 @@ pub(super) fn read_contact_coefficients<'g>(
     let rolling = read(Key::RollingFriction, "rolling friction");
     let restitution = read_restitution(scope, given, name, cx);
     let (friction, stiction) = (friction?, stiction?);
-    if let Some(e) = given.get(Key::StaticFriction).filter(|_| given.get(Key::Friction).is_some()) {
+    if let Some(e) = given
+        .expression_of_key(Key::StaticFriction)
+        .filter(|_| given.expression_of_key(Key::Friction).is_some())
+    {
         match (friction.constant_value(), stiction.constant_value()) {
             (Some(kinetic), Some(static_value)) if static_value < kinetic || kinetic == 0.0 => {
                 let message = match kinetic == 0.0 {
@@ -90,7 +94,8 @@ pub(super) fn read_restitution<'g>(
     name: &str,
     cx: &mut Diagnostics,
 ) -> (Option<Expr<'g>>, bool) {
-    let (e, of_impulses) = given.get(Key::Restitution).map(syntax::restitution_coefficient).unzip();
+    let (e, of_impulses) =
+        given.expression_of_key(Key::Restitution).map(syntax::restitution_value_and_kind).unzip();
     let value = resolve_contact_coefficient(scope, e, "restitution", Rule::Fraction, name, cx);
     (value, of_impulses == Some(true))
 }

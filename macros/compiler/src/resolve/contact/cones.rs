@@ -12,13 +12,13 @@ use super::surface::SurfaceForm;
 use crate::diag::Diagnostics;
 use crate::expr::Vec3;
 use crate::kinematics::perpendicular_directions;
-use crate::mechanism::{Constraint, Measure, Rule};
+use crate::mechanism::{Constraint, MeasuredQuantity, Rule};
 use crate::resolve::rows::{ConstraintRows, constraint_from_residual_and_rate};
 use crate::resolve::scope::Scope;
 use crate::syntax;
 
 /// Returns the rows of a pair whose first surface is a cone; `None` after an error.
-pub(super) fn rolling_cone_rows<'g>(
+pub(super) fn constraint_rows_of_rolling_cone<'g>(
     scope: &Scope<'_, 'g>,
     constraint: &syntax::Constraint,
     pair: &SurfacePair<'_, 'g>,
@@ -43,7 +43,7 @@ pub(super) fn rolling_cone_rows<'g>(
     let sine_of_surface_angle_text =
         || format!("the sine of the angle between the surfaces of `{}`", constraint.name.text);
     scope.record_parameter_condition(Rule::Positive, sine_of_surface_angle_text, &[sine]);
-    let (a, b) = (pair.first_direction(axis), pair.direction_of_second_body(axis_b));
+    let (a, b) = (pair.direction_of_first_body(axis), pair.direction_of_second_body(axis_b));
     // Rows of the apex: three positions, or one position and two velocities.
     let apex = match pair.b.form {
         SurfaceForm::Plane(n) => {
@@ -61,7 +61,7 @@ pub(super) fn rolling_cone_rows<'g>(
         rows.push(constraint_from_residual_and_rate(
             scope,
             (format!("{name}.{word}"), place),
-            Measure::Length,
+            MeasuredQuantity::Length,
             gap,
             e.dot(slip),
         ));
@@ -74,15 +74,20 @@ pub(super) fn rolling_cone_rows<'g>(
     let tilt = constraint_from_residual_and_rate(
         scope,
         (format!("{name}.tilt"), place),
-        Measure::Angle,
+        MeasuredQuantity::Angle,
         Some(tilt),
         rate,
     );
     let normal = (b.value * cosine_a - a.value * cosine_b) * lifted;
     let [w_a, w_b] = pair.angular_velocities();
     let spin = normal.dot(w_a - w_b);
-    let spin =
-        constraint_from_residual_and_rate(scope, (format!("{name}.spin"), place), Measure::Angle, None, spin);
+    let spin = constraint_from_residual_and_rate(
+        scope,
+        (format!("{name}.spin"), place),
+        MeasuredQuantity::Angle,
+        None,
+        spin,
+    );
     rows.extend([tilt, spin].map(|row| Constraint { group: 1, ..row }));
     Some(ConstraintRows { rows, surfaces: pair.written_surfaces(), ..ConstraintRows::default() })
 }

@@ -24,7 +24,7 @@ impl<'g> SurfacePair<'_, 'g> {
         let across = u.cross(w);
         let normal = across.map(|x| x / across.norm());
         let second = normal.cross(first);
-        let point = -support_point(&self.a.form, normal, 0.0, &|v| self.first_direction(v).value)?;
+        let point = -support_point(&self.a.form, normal, 0.0, &|v| self.direction_of_first_body(v).value)?;
         let offset = self.center.value - self.base.value + point - second_surface_to_common_axes(sheet.point);
         Some(PointContact {
             gap: normal.dot(offset),
@@ -45,11 +45,11 @@ pub(super) fn resolve_parametric_surface<'g>(
 ) -> Option<ParametricSurface<'g>> {
     let (first, second) = (declared_coordinate(scope, u, cx), declared_coordinate(scope, w, cx));
     let context = Context::new(AllowedQuantities::Placement, Some((frame.link, frame.pose.clone())));
-    let terms = scope.call_in_context(context, |scope| scope.resolve_terms(point, cx));
+    let terms = scope.call_in_context(context, |scope| scope.resolve_vector_terms(point, cx));
     let (first, second, terms) = (first?, second?, terms?);
     let zero = Vec3::zero(scope.graph);
-    let in_link = scope.kinematics.resolve(&terms, frame.link, zero);
-    let position = frame.pose.rotation.to_child(in_link);
+    let in_link = scope.kinematics.components_in_link_axes(&terms, frame.link, zero);
+    let position = frame.pose.rotation.vector_in_child_axes(in_link);
     let is_allowed_quantity = |q: Quantity| match q {
         Quantity::Configuration(k) => k == first.q.0 || k == second.q.0,
         q => matches!(q, Quantity::Parameter(_)),

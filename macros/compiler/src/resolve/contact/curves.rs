@@ -7,33 +7,33 @@
 //! Newton's method, which do not move the points in this pose, make them functions of the pose whose first
 //! and second derivatives are exact: contact points move along rims and sides as on smooth round surfaces.
 
-use super::geometry::{PointContact, limited_norm, tangents_of};
+use super::geometry::{PointContact, norm_bounded_below, tangents_of};
 use super::polytopes::{LEAST_SQUARE, PlacedPair, PolytopeFrame};
 use crate::expr::{Expr, Extreme, Vec3};
 use crate::mechanism::{CYLINDER_PAIR_FEATURES, CYLINDER_POINT_FEATURES, CYLINDER_POINTS};
 
 /// Point of a curve with tangent and curvature vector, in common axes.
 #[derive(Clone, Copy)]
-struct Curve<'g> {
+struct CurvePoint<'g> {
     point: Vec3<'g>,
     tangent: Vec3<'g>,
     curvature: Vec3<'g>,
 }
 
-impl<'g> Curve<'g> {
+impl<'g> CurvePoint<'g> {
     /// Returns a curve from its features: point, tangent and curvature vector.
-    fn from_features(frame: &PolytopeFrame<'g>, values: &[Expr<'g>]) -> Curve<'g> {
-        let vector = |first: usize| Vec3(std::array::from_fn(|k| values[first + k]));
-        Curve {
-            point: frame.position(vector(0)),
-            tangent: frame.direction(vector(3)),
-            curvature: frame.direction(vector(6)),
+    fn from_features(frame: &PolytopeFrame<'g>, values: &[Expr<'g>]) -> CurvePoint<'g> {
+        let vector_at_index = |first: usize| Vec3(std::array::from_fn(|k| values[first + k]));
+        CurvePoint {
+            point: frame.position_in_common_axes(vector_at_index(0)),
+            tangent: frame.direction_in_common_axes(vector_at_index(3)),
+            curvature: frame.direction_in_common_axes(vector_at_index(6)),
         }
     }
 
-    fn vertex(point: Vec3<'g>) -> Curve<'g> {
+    fn from_vertex(point: Vec3<'g>) -> CurvePoint<'g> {
         let zero = Vec3::zero(point[0].graph());
-        Curve { point, tangent: zero, curvature: zero }
+        CurvePoint { point, tangent: zero, curvature: zero }
     }
 
     /// Returns the point and the tangent at a distance along the curve, to second order.
@@ -54,7 +54,7 @@ struct CurvedFeatures<'g> {
     /// One if the normal is along the shortest connection of both curves.
     is_closest: Expr<'g>,
     radii: [Expr<'g>; 2],
-    curves: [Curve<'g>; 2],
+    curves: [CurvePoint<'g>; 2],
 }
 
 /// Face of a pair, in common axes.
@@ -72,14 +72,14 @@ struct FaceOfPair<'g> {
 
 impl<'g> PlacedPair<'g> {
     /// Returns the contacts of a pair with a cylinder.
-    pub(super) fn curved_contacts(&self) -> Vec<PointContact<'g>> {
+    pub(super) fn cylinder_pair_contacts(&self) -> Vec<PointContact<'g>> {
         let (values, zero) = (&self.features.values, self.unused.zero());
         let [curved, fixed] = CYLINDER_POINT_FEATURES;
         let [curved_count, fixed_count] = CYLINDER_POINTS;
         let is_second = values[0];
-        let own = PolytopeFrame::select(is_second, &self.second, &self.first);
-        let other = PolytopeFrame::select(is_second, &self.first, &self.second);
-        let outward = own.direction(self.features.vector(2));
+        let own = PolytopeFrame::select_frame_by_indicator(is_second, &self.second, &self.first);
+        let other = PolytopeFrame::select_frame_by_indicator(is_second, &self.first, &self.second);
+        let outward = own.direction_in_common_axes(self.features.vector_at_index(2));
         let face = FaceOfPair {
             is_second,
             origin: own.origin + outward * values[5],
@@ -96,20 +96,20 @@ impl<'g> PlacedPair<'g> {
                     side: values[1],
                     is_closest: values[2],
                     radii: [values[3], values[4]],
-                    curves: curves.map(|(frame, first)| Curve::from_features(frame, &values[first..])),
+                    curves: curves.map(|(frame, first)| CurvePoint::from_features(frame, &values[first..])),
                 },
                 &face,
             )
         });
         let on_face = (0..fixed_count).map(|k| {
             let values = &values[CYLINDER_PAIR_FEATURES + curved * curved_count + fixed * k..];
-            let point = other.position(Vec3([values[1], values[2], values[3]]));
+            let point = other.position_in_common_axes(Vec3([values[1], values[2], values[3]]));
             let features = CurvedFeatures {
                 on_face: values[0],
                 side: zero,
                 is_closest: zero,
                 radii: [zero; 2],
-                curves: [Curve::vertex(point); 2],
+                curves: [CurvePoint::from_vertex(point); 2],
             };
             self.curved_contact(&features, &face)
         });
@@ -125,8 +125,8 @@ impl<'g> PlacedPair<'g> {
         let across = own.cross(other);
         let is_on_curves = side.square() + is_closest;
         let normal = face.normal * (one - is_on_curves)
-            + across * (side / limited_norm(across, LEAST_SQUARE))
-            + between * (is_closest / limited_norm(between, LEAST_SQUARE));
+            + across * (side / norm_bounded_below(across, LEAST_SQUARE))
+            + between * (is_closest / norm_bounded_below(between, LEAST_SQUARE));
         let place = second + (first - second) * face.is_second;
         let height = face.outward.dot(place - face.origin);
         let gap_of_curves = normal.dot(between) - own_radius - other_radius;
@@ -152,8 +152,8 @@ impl<'g> CurvedFeatures<'g> {
         let [a, b] = &self.curves;
         let one = self.on_face.num(1.0);
         // The gradient of half the squared distance, or of the height above the face.
-        let direction = |between: Vec3<'g>| between + (face.normal - between) * self.on_face;
-        let present = direction(a.point - b.point);
+        let gradient_of_separation = |between: Vec3<'g>| between + (face.normal - between) * self.on_face;
+        let present = gradient_of_separation(a.point - b.point);
         let x = one - a.tangent.dot(a.tangent) * self.on_face + a.curvature.dot(present);
         let y = one - b.tangent.dot(b.tangent) * self.on_face - b.curvature.dot(present);
         let z = a.tangent.dot(b.tangent) * (self.on_face - one);
@@ -161,7 +161,7 @@ impl<'g> CurvedFeatures<'g> {
         let (mut s, mut t) = (one.zero(), one.zero());
         for _ in 0..2 {
             let ([first, own], [second, other]) = (a.point_and_tangent(s), b.point_and_tangent(t));
-            let along = direction(first - second);
+            let along = gradient_of_separation(first - second);
             let (own, other) = (own.dot(along), -other.dot(along));
             s += (z * other - y * own) / determinant;
             t += (z * own - x * other) / determinant;

@@ -50,14 +50,14 @@ struct DistancesFromCylinder<'g> {
 
 impl<'g> DistancesFromCylinder<'g> {
     /// Returns the position relative to the nearest point of the cylinder; zero inside.
-    fn offset_from_cylinder(&self) -> Vec3<'g> {
+    fn offset_from_nearest_point(&self) -> Vec3<'g> {
         let positive_part = |distance: Expr<'g>| distance.minimum_or_maximum(Extreme::Max, distance.zero());
         self.radial * positive_part(self.side) + self.axial * positive_part(self.end)
     }
 }
 
 impl<'g> Drum<'g> {
-    fn locate_point_on_cylinder(&self, p: Vec3<'g>) -> DistancesFromCylinder<'g> {
+    fn locate_relative_to_cylinder(&self, p: Vec3<'g>) -> DistancesFromCylinder<'g> {
         let height = self.axis.dot(p);
         let outward = p - self.axis * height;
         let least = self.radius * ON_SURFACE;
@@ -73,7 +73,7 @@ impl<'g> Drum<'g> {
     /// Returns the signed distance of a point, relative to the centre, and the outward normal at the nearest
     /// point of the surface.
     fn distance_and_normal(&self, p: Vec3<'g>) -> (Expr<'g>, Vec3<'g>) {
-        let DistancesFromCylinder { side, end, radial, axial } = self.locate_point_on_cylinder(p);
+        let DistancesFromCylinder { side, end, radial, axial } = self.locate_relative_to_cylinder(p);
         let (zero, least) = (side.zero(), self.radius * ON_SURFACE);
         let (over, beyond) =
             (side.minimum_or_maximum(Extreme::Max, zero), end.minimum_or_maximum(Extreme::Max, zero));
@@ -137,7 +137,7 @@ impl<'g> Drum<'g> {
     /// Returns the contact of a sphere whose centre is at `c` relative to that of the cylinder.
     pub(super) fn sphere_contact(&self, radius: Expr<'g>, c: Vec3<'g>) -> PointContact<'g> {
         let (distance, normal) = self.distance_and_normal(c);
-        contact(distance - radius, -(normal * radius), normal)
+        contact_from_gap_and_normal(distance - radius, -(normal * radius), normal)
     }
 
     /// Returns the contacts of a capsule whose centre is at `c` relative to that of the cylinder.
@@ -162,21 +162,21 @@ impl<'g> Drum<'g> {
     /// Returns the contacts with a box. `c` leads from the centre of the box to that of the cylinder; points
     /// are relative to the latter. `rim` returns the directions of four points of a rim, beginning with the
     /// lowest along a normal.
-    pub(super) fn box_contacts(
+    pub(super) fn contacts_with_box(
         &self,
         block: &OrientedBox<'g>,
         c: Vec3<'g>,
         rim: &dyn Fn(Vec3<'g>) -> [Vec3<'g>; 4],
     ) -> Vec<PointContact<'g>> {
         let mut points = self.cylinder_contacts_on_box_face(block, c, rim);
-        let contact_of_cylinder_point = |e: Vec3<'g>| {
+        let contact_of_box_edge_point = |e: Vec3<'g>| {
             let (distance, normal) = self.distance_and_normal(e - c);
-            contact(distance, e - c, -normal)
+            contact_from_gap_and_normal(distance, e - c, -normal)
         };
         // The edges of the face that is opposite to an end.
         let cosines = block.axes.map(|axis| axis.dot(self.axis).apply_function(Function::Abs));
         let facing = selector_of_largest(cosines);
-        let face = Face::facing(block, &facing, c, self.half);
+        let face = Face::face_on_side_of_position(block, &facing, c, self.half);
         let [_, first, second] = face.axes;
         let middle = face.axes[0] * face.half[0];
         for (along, across, reach, offset) in
@@ -185,7 +185,7 @@ impl<'g> Drum<'g> {
             for side in [-1.0, 1.0] {
                 let middle = middle + across * (offset * side);
                 let crossings = self.crossings_of_cylinder_side(middle - c, along, reach);
-                points.extend(crossings.map(|t| contact_of_cylinder_point(middle + along * t)));
+                points.extend(crossings.map(|t| contact_of_box_edge_point(middle + along * t)));
             }
         }
         // The edges at the corner that is nearest to the cylinder.
@@ -193,7 +193,7 @@ impl<'g> Drum<'g> {
         for k in 0..3 {
             let middle = sides[(k + 1) % 3] + sides[(k + 2) % 3];
             let (along, reach) = (block.axes[k], block.half[k]);
-            points.push(contact_of_cylinder_point(
+            points.push(contact_of_box_edge_point(
                 middle + along * self.nearest_position_on_segment(middle - c, along, reach),
             ));
         }
@@ -215,26 +215,27 @@ impl<'g> Drum<'g> {
             let reach = self.half * cosine.apply_function(Function::Abs) + self.radius * sine;
             axis.dot(c).apply_function(Function::Abs) - block.half[k] - reach
         });
-        let face = Face::facing(block, &selector_of_largest(separations), c, self.half);
+        let face = Face::face_on_side_of_position(block, &selector_of_largest(separations), c, self.half);
         let normal = face.axes[0];
         let directions = rim(normal);
         let (down, along) = (directions[0] * self.radius, self.axis * self.half);
-        let (start, direction) = (face.components(c + down), face.components(along));
+        let (start, direction) =
+            (face.components_along_face_axes(c + down), face.components_along_face_axes(along));
         let [from, to] = face.clip_line_to_face_sides(&start, &direction);
         let outside = ((from - to) * self.half).minimum_or_maximum(Extreme::Min, self.half);
         let line = [from.minimum_or_maximum(Extreme::Min, one), to.minimum_or_maximum(Extreme::Max, -one)]
             .map(|t| {
                 let height = start[0] + direction[0] * t - face.half[0];
-                face.contact(height.minimum_or_maximum(Extreme::Max, outside), down + along * t)
+                face.contact_at_position(height.minimum_or_maximum(Extreme::Max, outside), down + along * t)
             });
         let lower = along * -(self.axis.dot(normal).apply_function(Function::Signum));
         let rim = directions[1..].iter().map(|direction| {
             let point = lower + *direction * self.radius;
-            let at = face.components(c + point);
+            let at = face.components_along_face_axes(c + point);
             let distance_beyond_half_width = |k: usize| at[k].apply_function(Function::Abs) - face.half[k];
             let outside =
                 distance_beyond_half_width(1).minimum_or_maximum(Extreme::Max, distance_beyond_half_width(2));
-            face.contact((at[0] - face.half[0]).minimum_or_maximum(Extreme::Max, outside), point)
+            face.contact_at_position((at[0] - face.half[0]).minimum_or_maximum(Extreme::Max, outside), point)
         });
         line.into_iter().chain(rim).collect()
     }
@@ -250,7 +251,7 @@ impl<'g> Drum<'g> {
         let mut point = nearest_point_in_block(c);
         for _ in 0..PROJECTIONS {
             point = nearest_point_in_block(
-                point - self.locate_point_on_cylinder(point - c).offset_from_cylinder(),
+                point - self.locate_relative_to_cylinder(point - c).offset_from_nearest_point(),
             );
         }
         std::array::from_fn(|k| {
@@ -278,7 +279,7 @@ pub(super) fn unbounded_cylinder_box_contacts<'g>(
 
 /// Returns the contacts of a capsule with an unbounded cylinder: its ends, and the point of its axis that is
 /// nearest to that of the cylinder. `c` is the centre of the capsule relative to that of the cylinder.
-pub(super) fn capsule_on_pipe<'g>(
+pub(super) fn capsule_unbounded_cylinder_contacts<'g>(
     radius: Expr<'g>,
     (own, reach): (Vec3<'g>, Expr<'g>),
     pipe: &SurfaceForm<'g>,
@@ -297,7 +298,7 @@ pub(super) fn capsule_on_pipe<'g>(
 }
 
 /// Returns a candidate contact with this gap, point and normal.
-fn contact<'g>(gap: Expr<'g>, point: Vec3<'g>, normal: Vec3<'g>) -> PointContact<'g> {
+fn contact_from_gap_and_normal<'g>(gap: Expr<'g>, point: Vec3<'g>, normal: Vec3<'g>) -> PointContact<'g> {
     let (first, second) = tangents_of(normal);
     let axes = [("normal", normal), ("first", first), ("second", second)];
     PointContact { gap, point, axes, conditions: Vec::new() }

@@ -3,7 +3,7 @@
 use super::surface::{Surface, SurfaceForm};
 use crate::expr::{Expr, Vec3};
 use crate::mechanism::drawing::{entries_by_row, entries_of_vectors, pose_relative_to_named_frame};
-use crate::mechanism::{NamedFrame, Piece, PieceKind, Role};
+use crate::mechanism::{NamedFrame, Piece, PieceShape, ShownObjectKind};
 
 /// Returns the pieces for surfaces with the names of their contacts, each once, and the heights of terrains.
 pub fn surface_pieces<'g>(
@@ -37,17 +37,20 @@ fn hull_pieces<'g>(
     let Some((index, pose)) = pose_relative_to_named_frame(frames, frame.link, &frame.pose) else {
         return Vec::new();
     };
-    let position = |p: Vec3<'g>| pose.translation + pose.rotation.to_parent(p);
+    let position_in_named_frame = |p: Vec3<'g>| pose.translation + pose.rotation.vector_in_parent_axes(p);
     let drawing_piece = |kind, frames, ends: &[Vec3<'g>]| {
-        let numbers = entries_of_vectors(&ends.iter().map(|p| position(*p)).collect::<Vec<_>>());
-        Piece { name: name.to_string(), role: Role::Surface, kind, frames, numbers }
+        let numbers =
+            entries_of_vectors(&ends.iter().map(|p| position_in_named_frame(*p)).collect::<Vec<_>>());
+        Piece { name: name.to_string(), role: ShownObjectKind::Surface, kind, frames, numbers }
     };
     match &hull.shape {
         Some(shape) => {
             let ends = shape.edges.iter().map(|edge| edge.map(|k| hull.vertices[k]));
-            ends.map(|ends| drawing_piece(PieceKind::Bar, [index, index], &ends)).collect()
+            ends.map(|ends| drawing_piece(PieceShape::Bar, [index, index], &ends)).collect()
         }
-        None => hull.vertices.iter().map(|p| drawing_piece(PieceKind::Point, [index, None], &[*p])).collect(),
+        None => {
+            hull.vertices.iter().map(|p| drawing_piece(PieceShape::Point, [index, None], &[*p])).collect()
+        }
     }
 }
 
@@ -60,39 +63,46 @@ fn surface_piece<'g>(
     let (index, pose) = pose_relative_to_named_frame(frames, frame.link, &frame.pose)?;
     let at = entries_of_vectors(&[pose.translation]);
     let round_piece_numbers = |axis, numbers: &[Expr<'g>]| {
-        [entries_of_vectors(&[pose.translation, pose.rotation.to_parent(axis)]), numbers.to_vec()].concat()
+        [entries_of_vectors(&[pose.translation, pose.rotation.vector_in_parent_axes(axis)]), numbers.to_vec()]
+            .concat()
     };
     let numbers_of_oriented_shape = |lengths: &[Expr<'g>; 3]| {
         [at.clone(), entries_by_row(&pose.rotation.rotation_matrix()), lengths.to_vec()].concat()
     };
     let (kind, numbers) = match form {
-        SurfaceForm::Circle(r, n) => (PieceKind::Ring, round_piece_numbers(*n, &[*r])),
-        SurfaceForm::Torus(r, tube, n) => (PieceKind::Torus, round_piece_numbers(*n, &[*r, *tube])),
-        SurfaceForm::Sphere(r) => (PieceKind::Sphere, [at.clone(), vec![*r]].concat()),
-        SurfaceForm::Bowl(r) => (PieceKind::Bowl, [at.clone(), vec![*r]].concat()),
-        SurfaceForm::Ellipsoid(lengths) => (PieceKind::Ellipsoid, numbers_of_oriented_shape(lengths)),
-        SurfaceForm::Cuboid(lengths) => (PieceKind::Cuboid, numbers_of_oriented_shape(lengths)),
-        SurfaceForm::Plane(n) => (PieceKind::Plane, round_piece_numbers(*n, &[])),
+        SurfaceForm::Circle(r, n) => (PieceShape::Ring, round_piece_numbers(*n, &[*r])),
+        SurfaceForm::Torus(r, tube, n) => (PieceShape::Torus, round_piece_numbers(*n, &[*r, *tube])),
+        SurfaceForm::Sphere(r) => (PieceShape::Sphere, [at.clone(), vec![*r]].concat()),
+        SurfaceForm::Bowl(r) => (PieceShape::Bowl, [at.clone(), vec![*r]].concat()),
+        SurfaceForm::Ellipsoid(lengths) => (PieceShape::Ellipsoid, numbers_of_oriented_shape(lengths)),
+        SurfaceForm::Cuboid(lengths) => (PieceShape::Cuboid, numbers_of_oriented_shape(lengths)),
+        SurfaceForm::Plane(n) => (PieceShape::Plane, round_piece_numbers(*n, &[])),
         SurfaceForm::Cylinder(r, n) | SurfaceForm::Tube(r, n) => {
-            (PieceKind::Pipe, round_piece_numbers(*n, &[*r]))
+            (PieceShape::Pipe, round_piece_numbers(*n, &[*r]))
         }
-        SurfaceForm::Drum(r, length, n) => (PieceKind::Cylinder, round_piece_numbers(*n, &[*r, *length])),
-        SurfaceForm::Capsule(r, length, n) => (PieceKind::Capsule, round_piece_numbers(*n, &[*r, *length])),
+        SurfaceForm::Drum(r, length, n) => (PieceShape::Cylinder, round_piece_numbers(*n, &[*r, *length])),
+        SurfaceForm::Capsule(r, length, n) => (PieceShape::Capsule, round_piece_numbers(*n, &[*r, *length])),
         SurfaceForm::Cone(half, n) | SurfaceForm::Funnel(half, n) => {
-            (PieceKind::Funnel, round_piece_numbers(*n, &[*half]))
+            (PieceShape::Funnel, round_piece_numbers(*n, &[*half]))
         }
-        SurfaceForm::Point => (PieceKind::Point, at.clone()),
+        SurfaceForm::Point => (PieceShape::Point, at.clone()),
         SurfaceForm::Terrain(terrain) => {
             let known = heights.iter().position(|height| *height == terrain.height);
             let number = known.unwrap_or(heights.len());
             heights.extend(known.is_none().then_some(terrain.height));
             (
-                PieceKind::Terrain(number),
+                PieceShape::Terrain(number),
                 [at.clone(), entries_by_row(&pose.rotation.rotation_matrix())].concat(),
             )
         }
         // A sheet is unbounded and has no axis of symmetry; a hull is drawn by its edges.
         SurfaceForm::ParametricSurface(_) | SurfaceForm::Hull(_) => return None,
     };
-    Some(Piece { name: name.to_string(), role: Role::Surface, kind, frames: [index, None], numbers })
+    Some(Piece {
+        name: name.to_string(),
+        role: ShownObjectKind::Surface,
+        kind,
+        frames: [index, None],
+        numbers,
+    })
 }

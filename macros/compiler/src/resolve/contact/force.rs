@@ -14,9 +14,9 @@ use crate::syntax;
 /// accelerations are those of the motion without contact forces.
 pub fn uses_contact_forces_consistently(values: &[Expr<'_>]) -> bool {
     let quantities: Vec<Quantity> = symbols_in(values).into_iter().map(Quantity::from_symbol).collect();
-    let any = |f: fn(&Quantity) -> bool| quantities.iter().any(f);
-    !any(|q| matches!(q, Quantity::ContactForce(_)))
-        || !any(|q| matches!(q, Quantity::Reaction(_) | Quantity::Acceleration(_)))
+    let uses_quantity_where = |f: fn(&Quantity) -> bool| quantities.iter().any(f);
+    !uses_quantity_where(|q| matches!(q, Quantity::ContactForce(_)))
+        || !uses_quantity_where(|q| matches!(q, Quantity::Reaction(_) | Quantity::Acceleration(_)))
 }
 
 impl<'g> Scope<'_, 'g> {
@@ -103,7 +103,7 @@ pub(super) fn report_friction_without_rotation(
     for (key, about, _) in
         checks.into_iter().filter(|(.., has_no_rotation)| *has_no_rotation && contact.of_file.is_none())
     {
-        let Some(e) = contact.arguments.get(key) else { continue };
+        let Some(e) = contact.arguments.expression_of_key(key) else { continue };
         cx.report_error(e.place.clone(), format!("no friction moment acts {about}"))
             .add_help("`torsional` resists rotation about the normal, `rolling` rotation about the tangents");
     }

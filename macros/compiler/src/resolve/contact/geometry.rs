@@ -3,7 +3,7 @@
 use crate::expr::{Expr, Extreme, Function, Vec3};
 use crate::kinematics::perpendicular_directions;
 use crate::mechanism::LinkId;
-use crate::resolve::scope::Terms;
+use crate::resolve::scope::VectorTerms;
 
 /// A contact at a point, in the axes of the link that carries both bodies.
 pub(super) struct PointContact<'g> {
@@ -29,7 +29,7 @@ pub(super) struct CandidatePoint<'g> {
     /// Link in whose axes the directions are expressed.
     pub(super) ancestor: Option<LinkId>,
     /// Position of the point.
-    pub(super) place: Terms<'g>,
+    pub(super) place: VectorTerms<'g>,
 }
 
 /// Squared sine of the angle below which lines are treated as parallel.
@@ -46,7 +46,7 @@ pub(super) fn indicator_of_positive(x: Expr<'_>) -> Expr<'_> {
 /// Returns the directions from the centre of a rim to its lowest point over a plane and to the points 90°,
 /// 180° and 270° further along the rim. If the rim lies flat, all its points are lowest; a fixed direction of
 /// the body is then used.
-pub(super) fn rim<'g>(
+pub(super) fn directions_to_rim_points<'g>(
     axis: Vec3<'g>,
     normal: Vec3<'g>,
     rotate: &dyn Fn(Vec3<'g>) -> Vec3<'g>,
@@ -62,7 +62,7 @@ pub(super) fn rim<'g>(
 }
 
 /// Returns the norm of a vector; if its square is below `least_square`, the root of the latter.
-pub(super) fn limited_norm<'g>(v: Vec3<'g>, least_square: f64) -> Expr<'g> {
+pub(super) fn norm_bounded_below<'g>(v: Vec3<'g>, least_square: f64) -> Expr<'g> {
     let square = v.dot(v);
     square.minimum_or_maximum(Extreme::Max, square.num(1.0) * least_square).sqrt()
 }
@@ -76,7 +76,7 @@ pub(super) fn clamp<'g>(x: Expr<'g>, limit: Expr<'g>) -> Expr<'g> {
 /// axes. Each segment has an axis and half its length; `c` leads from the second centre to the first
 /// (Ericson, *Real-Time Collision Detection*, 2005, § 5.1.9). For parallel segments, one of the many
 /// solutions is returned.
-pub(super) fn nearest<'g>(
+pub(super) fn closest_positions_on_segments<'g>(
     c: Vec3<'g>,
     (own, own_reach): (Vec3<'g>, Expr<'g>),
     (axis, reach): (Vec3<'g>, Expr<'g>),

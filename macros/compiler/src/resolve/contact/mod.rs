@@ -40,11 +40,11 @@ use crate::diag::Diagnostics;
 use crate::expr::Vec3;
 use crate::kinematics::time_derivative;
 use crate::language::Callable;
-use crate::mechanism::{Constraint, FrictionTerm, Measure, Model};
+use crate::mechanism::{Constraint, FrictionTerm, MeasuredQuantity, Model};
 use crate::syntax::{self, ExprKind};
-use cones::rolling_cone_rows;
+use cones::constraint_rows_of_rolling_cone;
 use geometry::PointContact;
-use pair::{SurfacePair, surfaces_in_known_order};
+use pair::{SurfacePair, surfaces_in_accepted_order};
 use read::read_surface;
 use surface::SurfaceForm;
 
@@ -62,9 +62,9 @@ pub fn rolling_rows<'g>(
 ) -> Option<ConstraintRows<'g>> {
     let pair = read_surface_pair(scope, model, constraint, cx)?;
     if let SurfaceForm::Cone(..) = pair.a.form {
-        return rolling_cone_rows(scope, constraint, &pair, cx);
+        return constraint_rows_of_rolling_cone(scope, constraint, &pair, cx);
     }
-    let contact = pair.contact()?;
+    let contact = pair.contact_of_pair()?;
     let slip = pair.slip(contact.point);
     let mut rows = contact_rows(scope, constraint, &contact, slip, Vec::new());
     let [_, tangents @ ..] = contact.axes;
@@ -73,7 +73,7 @@ pub fn rolling_rows<'g>(
         rows.push(constraint_from_residual_and_rate(
             scope,
             (name, &constraint.name.place),
-            Measure::Length,
+            MeasuredQuantity::Length,
             None,
             e.dot(slip),
         ));
@@ -99,13 +99,23 @@ fn contact_rows<'g>(
         true => normal.dot(slip),
         false => time_derivative(scope.configuration_space(), contact.gap),
     };
-    let name = |word| (format!("{}.{word}", constraint.name.text), place);
-    let distance =
-        constraint_from_residual_and_rate(scope, name(word), Measure::Length, Some(contact.gap), rate);
+    let name_and_place_of_row = |word| (format!("{}.{word}", constraint.name.text), place);
+    let distance = constraint_from_residual_and_rate(
+        scope,
+        name_and_place_of_row(word),
+        MeasuredQuantity::Length,
+        Some(contact.gap),
+        rate,
+    );
     let conditions = contact.conditions.iter().map(|(word, distance)| {
         let rate = time_derivative(scope.configuration_space(), *distance);
-        let row =
-            constraint_from_residual_and_rate(scope, name(word), Measure::Length, Some(*distance), rate);
+        let row = constraint_from_residual_and_rate(
+            scope,
+            name_and_place_of_row(word),
+            MeasuredQuantity::Length,
+            Some(*distance),
+            rate,
+        );
         Constraint { determines: true, ..row }
     });
     [Constraint { friction, ..distance }].into_iter().chain(conditions).collect()
@@ -131,7 +141,7 @@ fn read_surface_pair<'s, 'g>(
 ) -> Option<SurfacePair<'s, 'g>> {
     let e = &constraint.value;
     let kind = constraint.kind.surface_pair_function();
-    let known = kind.map_or("", Callable::contact_verb);
+    let known = kind.map_or("", Callable::rolls_or_slips_name);
     let example = format!("write `{known}(disk.circle(radius, y), ground.plane(z))`");
     let (first, second) = match &e.kind {
         ExprKind::Call(word, pair) if word.id == kind && pair.len() == 2 => (&pair[0], &pair[1]),
@@ -146,7 +156,7 @@ fn read_surface_pair<'s, 'g>(
         return None;
     }
     let b = read_surface(scope, second, &example, cx);
-    let pair = surfaces_in_known_order(scope, model, a?, b?, SurfaceForm::can_roll_on, second, cx)?;
+    let pair = surfaces_in_accepted_order(scope, model, a?, b?, SurfaceForm::can_roll_on, second, cx)?;
     if !pair.a.form.can_roll_on(&pair.b.form) {
         cx.report_error(e.place.clone(), "the contact point of these surfaces is not supported")
             .add_help(SUPPORTED_PAIRS);

@@ -7,7 +7,7 @@ use crate::expr::{Expr, Graph, Vec3};
 use crate::kinematics::jet::{self, MovingVector, RelativeLinkMotion};
 use crate::kinematics::perpendicular_directions;
 use crate::mechanism::Model;
-use crate::resolve::scope::{PlacedElements, Scope, Terms};
+use crate::resolve::scope::{PlacedElements, Scope, VectorTerms};
 use crate::syntax;
 
 /// Two surfaces with the motions of their bodies relative to the link that carries both, in the axes of that
@@ -28,7 +28,7 @@ pub(super) struct SurfacePair<'s, 'g> {
 }
 
 /// Returns two surfaces with their motions, in the order that `is_known` accepts.
-pub(super) fn surfaces_in_known_order<'s, 'g>(
+pub(super) fn surfaces_in_accepted_order<'s, 'g>(
     scope: &'s Scope<'_, 'g>,
     model: &Model<'g>,
     mut a: Surface<'g>,
@@ -58,7 +58,7 @@ pub(super) fn surfaces_in_known_order<'s, 'g>(
 
 impl<'g> SurfacePair<'_, 'g> {
     /// Returns the graph that owns the expressions.
-    pub(super) fn graph(&self) -> &'g Graph {
+    pub(super) fn expression_graph(&self) -> &'g Graph {
         self.center.value[0].graph()
     }
 
@@ -69,7 +69,7 @@ impl<'g> SurfacePair<'_, 'g> {
     }
 
     /// Returns the position of a point given relative to the centre of the first surface.
-    pub(super) fn contact_position(&self, point: Vec3<'g>) -> Terms<'g> {
+    pub(super) fn contact_position(&self, point: Vec3<'g>) -> VectorTerms<'g> {
         let frame = &self.a.frame;
         let mut place = self.kinematics.position_of_point(frame.link, frame.pose.translation);
         place.push((self.on_a.ancestor, point));
@@ -77,13 +77,21 @@ impl<'g> SurfacePair<'_, 'g> {
     }
 
     /// Returns a direction of the first body, with its rate, in the common axes.
-    pub(super) fn first_direction(&self, v: Vec3<'g>) -> MovingVector<'g> {
-        jet::motion_of_direction(&self.kinematics.joints, &self.on_a, self.a.frame.pose.rotation.to_parent(v))
+    pub(super) fn direction_of_first_body(&self, v: Vec3<'g>) -> MovingVector<'g> {
+        jet::motion_of_direction(
+            &self.kinematics.joints,
+            &self.on_a,
+            self.a.frame.pose.rotation.vector_in_parent_axes(v),
+        )
     }
 
     /// Returns a direction of the second body, with its rate, in the common axes.
     pub(super) fn direction_of_second_body(&self, v: Vec3<'g>) -> MovingVector<'g> {
-        jet::motion_of_direction(&self.kinematics.joints, &self.on_b, self.b.frame.pose.rotation.to_parent(v))
+        jet::motion_of_direction(
+            &self.kinematics.joints,
+            &self.on_b,
+            self.b.frame.pose.rotation.vector_in_parent_axes(v),
+        )
     }
 
     /// Returns the velocity of the first body relative to the second at a point given relative to the centre
@@ -102,8 +110,8 @@ impl<'g> SurfacePair<'_, 'g> {
     }
 
     /// Returns the contact of a pair; `None` for pairs that touch along a line.
-    pub(super) fn contact(&self) -> Option<PointContact<'g>> {
-        let first_surface_to_common_axes = |v| self.first_direction(v).value;
+    pub(super) fn contact_of_pair(&self) -> Option<PointContact<'g>> {
+        let first_surface_to_common_axes = |v| self.direction_of_first_body(v).value;
         let second_surface_to_common_axes = |v| self.direction_of_second_body(v).value;
         let c = self.center.value - self.base.value;
         match (&self.a.form, &self.b.form) {

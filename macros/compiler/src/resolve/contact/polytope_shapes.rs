@@ -93,7 +93,7 @@ mod tests {
         let shape = box_polytope([1.0, 2.0, 3.0]).expect("a box");
         assert_eq!((shape.vertices.len(), shape.faces.len(), shape.edges.len()), (8, 6, 12));
         assert!(shape.faces.iter().all(|face| face.corners.len() == 4));
-        assert!((shape.size() - 3.0).abs() < 1e-15 && shape.center() == [0.0; 3]);
+        assert!((shape.half_sum_of_lengths() - 3.0).abs() < 1e-15 && shape.center() == [0.0; 3]);
         for edge in &shape.edges {
             let [a, b] = edge.ends.map(|k| shape.vertices[usize::from(k)]);
             let along = std::array::from_fn(|axis| b[axis] - a[axis]);
@@ -110,12 +110,15 @@ mod tests {
         let shape = hull_polytope(&Hull::new(&points, 32).expect("a hull")).expect("a polytope");
         assert_eq!((shape.faces.len(), shape.edges.len()), (5, 8));
         for face in &shape.faces {
-            let corner = |k: usize| shape.vertices[usize::from(face.corners[k % face.corners.len()])];
+            let corner_of_face = |k: usize| shape.vertices[usize::from(face.corners[k % face.corners.len()])];
             for k in 0..face.corners.len() {
-                let side = |k: usize| -> [f64; 3] {
-                    std::array::from_fn(|axis| corner(k + 1)[axis] - corner(k)[axis])
+                let side_vector_from_corner = |k: usize| -> [f64; 3] {
+                    std::array::from_fn(|axis| corner_of_face(k + 1)[axis] - corner_of_face(k)[axis])
                 };
-                assert!(dot(cross(side(k), side(k + 1)), face.normal) > 0.0, "{face:?}");
+                assert!(
+                    dot(cross(side_vector_from_corner(k), side_vector_from_corner(k + 1)), face.normal) > 0.0,
+                    "{face:?}"
+                );
             }
         }
     }

@@ -12,7 +12,7 @@
 //! surfaces, or the negative depth of their penetration. Unused contact points have gaps above any distance
 //! of the surfaces.
 
-use super::geometry::{PointContact, limited_norm, nearest, tangents_of};
+use super::geometry::{PointContact, closest_positions_on_segments, norm_bounded_below, tangents_of};
 use super::pair::SurfacePair;
 use super::polytope_shapes::{box_polytope, hull_polytope, segment_polytope};
 use super::surface::SurfaceForm;
@@ -46,16 +46,16 @@ pub(super) struct PolytopeFrame<'g> {
 }
 
 impl<'g> PolytopeFrame<'g> {
-    pub(super) fn direction(&self, v: Vec3<'g>) -> Vec3<'g> {
+    pub(super) fn direction_in_common_axes(&self, v: Vec3<'g>) -> Vec3<'g> {
         self.axes[0] * v[0] + self.axes[1] * v[1] + self.axes[2] * v[2]
     }
 
-    pub(super) fn position(&self, v: Vec3<'g>) -> Vec3<'g> {
-        self.origin + self.direction(v)
+    pub(super) fn position_in_common_axes(&self, v: Vec3<'g>) -> Vec3<'g> {
+        self.origin + self.direction_in_common_axes(v)
     }
 
     /// Returns `first` if `which` is one, `second` if it is zero.
-    pub(super) fn select(which: Expr<'g>, first: &Self, second: &Self) -> Self {
+    pub(super) fn select_frame_by_indicator(which: Expr<'g>, first: &Self, second: &Self) -> Self {
         let select_vector_by_indicator = |a: Vec3<'g>, b: Vec3<'g>| b + (a - b) * which;
         PolytopeFrame {
             axes: std::array::from_fn(|k| select_vector_by_indicator(first.axes[k], second.axes[k])),
@@ -70,7 +70,7 @@ pub(super) struct PairFeatures<'g> {
 }
 
 impl<'g> PairFeatures<'g> {
-    pub(super) fn vector(&self, first: usize) -> Vec3<'g> {
+    pub(super) fn vector_at_index(&self, first: usize) -> Vec3<'g> {
         Vec3(std::array::from_fn(|k| self.values[first + k]))
     }
 }
@@ -94,7 +94,7 @@ pub(super) struct PlacedPair<'g> {
 
 impl<'g> SurfacePair<'_, 'g> {
     /// Whether the runtime selects features that determine the contact points.
-    pub(super) fn has_selected_features(&self) -> bool {
+    pub(super) fn features_are_selected_at_runtime(&self) -> bool {
         match (&self.a.form, &self.b.form) {
             (SurfaceForm::Sphere(_), _) => false,
             (_, SurfaceForm::Hull(_)) => true,
@@ -113,35 +113,38 @@ impl<'g> SurfacePair<'_, 'g> {
         &self,
         first_feature: usize,
     ) -> Result<(PolytopePair<'g>, Vec<PointContact<'g>>), &'static str> {
-        let g = self.graph();
-        let axes_of = |rotate: &dyn Fn(Vec3<'g>) -> Vec3<'g>| {
+        let g = self.expression_graph();
+        let rotated_coordinate_axes = |rotate: &dyn Fn(Vec3<'g>) -> Vec3<'g>| {
             std::array::from_fn(|k| rotate(Vec3::coordinate_axis(g, k)))
         };
-        let own_axes: [Vec3<'g>; 3] = axes_of(&|v| self.first_direction(v).value);
-        let other_axes: [Vec3<'g>; 3] = axes_of(&|v| self.direction_of_second_body(v).value);
+        let own_axes: [Vec3<'g>; 3] = rotated_coordinate_axes(&|v| self.direction_of_first_body(v).value);
+        let other_axes: [Vec3<'g>; 3] = rotated_coordinate_axes(&|v| self.direction_of_second_body(v).value);
         let second = self.rounded_polytope(&self.b.form, 0.0)?;
-        let mut first = self.rounded_polytope(&self.a.form, second.polytope.reach())?;
+        let mut first =
+            self.rounded_polytope(&self.a.form, second.polytope.largest_distance_from_origin())?;
         if let (SurfaceForm::Cylinder(radius, _), true) = (&self.a.form, second.polytope.radius > 0.0) {
-            first.polytope.radius = positive_number(*radius)?;
+            first.polytope.radius = positive_constant_value(*radius)?;
         }
         let c = self.center.value - self.base.value;
         // Only the part of an unbounded cylinder next to the other body touches it.
         let shift = match &self.a.form {
             SurfaceForm::Cylinder(_, axis) => {
-                let axis = self.first_direction(*axis).value;
+                let axis = self.direction_of_first_body(*axis).value;
                 axis * -axis.dot(c)
             }
             _ => Vec3::zero(g),
         };
         let own = PolytopeFrame { axes: own_axes, origin: shift };
         let other = PolytopeFrame { axes: other_axes, origin: -c };
-        let points = first.polytope.most_corners() + second.polytope.most_corners();
+        let points = first.polytope.most_corners_per_face() + second.polytope.most_corners_per_face();
         let points = match first.polytope.faces.is_empty() {
             true => 2,
             false => points.min(MAX_FACE_POINTS),
         };
         let pose = relative_pose((&own, &first.polytope), (&other, &second.polytope));
-        let reach = g.num(first.polytope.reach() + second.polytope.reach());
+        let reach = g.num(
+            first.polytope.largest_distance_from_origin() + second.polytope.largest_distance_from_origin(),
+        );
         let pair = PolytopePair { first: first.polytope, second: second.polytope, points, pose };
         let features = (0..pair.feature_count()).map(|k| Quantity::ContactFeature(first_feature + k).expr(g));
         let placed = PlacedPair {
@@ -151,7 +154,11 @@ impl<'g> SurfacePair<'_, 'g> {
             radii: [first.radius, second.radius],
             unused: (c + shift).norm() + reach,
         };
-        let contacts = if pair.has_cylinder() { placed.curved_contacts() } else { placed.contacts(points) };
+        let contacts = if pair.has_cylinder() {
+            placed.cylinder_pair_contacts()
+        } else {
+            placed.face_and_edge_contacts(points)
+        };
         Ok((pair, contacts))
     }
 
@@ -165,7 +172,7 @@ impl<'g> SurfacePair<'_, 'g> {
         form: &SurfaceForm<'g>,
         reach: f64,
     ) -> Result<RoundedPolytope<'g>, &'static str> {
-        let zero = self.graph().zero();
+        let zero = self.expression_graph().zero();
         let (polytope, radius) = match form {
             SurfaceForm::Hull(hull) => {
                 let shape = hull.shape.as_ref().ok_or(NOT_CONSTANT)?;
@@ -186,8 +193,8 @@ impl<'g> SurfacePair<'_, 'g> {
             }
             SurfaceForm::Drum(radius, length, axis) => {
                 let axis = axis.constant_components().ok_or(CYLINDER_NOT_CONSTANT)?;
-                let mut polytope = segment_polytope(axis, positive_number(*length)?);
-                polytope.radius = positive_number(*radius)?;
+                let mut polytope = segment_polytope(axis, positive_constant_value(*length)?);
+                polytope.radius = positive_constant_value(*radius)?;
                 (polytope, zero)
             }
             _ => return Err(NOT_CONSTANT),
@@ -201,7 +208,7 @@ impl<'g> SurfacePair<'_, 'g> {
 /// # Errors
 ///
 /// [`CYLINDER_NOT_CONSTANT`] if the dimension is not a positive number.
-fn positive_number(x: Expr<'_>) -> Result<f64, &'static str> {
+fn positive_constant_value(x: Expr<'_>) -> Result<f64, &'static str> {
     x.constant_value().filter(|x| *x > 0.0).ok_or(CYLINDER_NOT_CONSTANT)
 }
 
@@ -213,7 +220,7 @@ fn relative_pose<'g>(
     let g = own.origin[0].graph();
     let offset = other.origin - own.origin;
     let centers = [(own, first), (other, second)]
-        .map(|(frame, shape)| frame.position(Vec3::vector_from_constants(g, shape.center())));
+        .map(|(frame, shape)| frame.position_in_common_axes(Vec3::vector_from_constants(g, shape.center())));
     let height = (centers[1] - centers[0]).dot(Vec3::vector_from_constants(g, TIE_BREAK));
     let rotation = other.axes.iter().flat_map(|axis| own.axes.map(|own| own.dot(*axis)));
     let position = own.axes.map(|axis| axis.dot(offset));
@@ -223,11 +230,11 @@ fn relative_pose<'g>(
 
 impl<'g> PlacedPair<'g> {
     /// Returns the contacts of the points on a face, followed by the contact of edges and closest points.
-    fn contacts(&self, points: usize) -> Vec<PointContact<'g>> {
+    fn face_and_edge_contacts(&self, points: usize) -> Vec<PointContact<'g>> {
         let (is_second, zero) = (self.features.values[0], self.unused.zero());
-        let own = PolytopeFrame::select(is_second, &self.second, &self.first);
-        let other = PolytopeFrame::select(is_second, &self.first, &self.second);
-        let outward = own.direction(self.features.vector(2));
+        let own = PolytopeFrame::select_frame_by_indicator(is_second, &self.second, &self.first);
+        let other = PolytopeFrame::select_frame_by_indicator(is_second, &self.first, &self.second);
+        let outward = own.direction_in_common_axes(self.features.vector_at_index(2));
         // Normals point towards the first surface.
         let normal = outward * (is_second * 2.0 - zero.num(1.0));
         let (first, second) = tangents_of(normal);
@@ -258,15 +265,19 @@ impl<'g> PlacedPair<'g> {
         let (values, one) = (&self.features.values, self.unused.num(1.0));
         let (side, is_closest) = (values[6], values[7]);
         let is_crossing = side.square();
-        let (start, own) =
-            (self.first.position(self.features.vector(8)), self.first.direction(self.features.vector(11)));
-        let (end, along) =
-            (self.second.position(self.features.vector(15)), self.second.direction(self.features.vector(18)));
-        let (near, far) = nearest(start - end, (own, values[14]), (along, values[21]));
+        let (start, own) = (
+            self.first.position_in_common_axes(self.features.vector_at_index(8)),
+            self.first.direction_in_common_axes(self.features.vector_at_index(11)),
+        );
+        let (end, along) = (
+            self.second.position_in_common_axes(self.features.vector_at_index(15)),
+            self.second.direction_in_common_axes(self.features.vector_at_index(18)),
+        );
+        let (near, far) = closest_positions_on_segments(start - end, (own, values[14]), (along, values[21]));
         let (start, end) = (start + own * near, end + along * far);
         let (separation, across) = (start - end, own.cross(along));
-        let distance = limited_norm(separation, LEAST_SQUARE);
-        let crossing = across * (side / limited_norm(across, PARALLEL));
+        let distance = norm_bounded_below(separation, LEAST_SQUARE);
+        let crossing = across * (side / norm_bounded_below(across, PARALLEL));
         let normal =
             crossing + separation * (is_closest / distance) + face_normal * (one - is_crossing - is_closest);
         let [own_radius, other_radius] = self.radii;
@@ -284,12 +295,13 @@ impl<'g> PlacedPair<'g> {
 /// Returns the position of a point on a face from its features: `own` is the frame of the polytope with the
 /// face, `other` that of the other polytope.
 fn point_of_face<'g>(values: &[Expr<'g>], own: &PolytopeFrame<'g>, other: &PolytopeFrame<'g>) -> Vec3<'g> {
-    let vector = |first: usize| Vec3(std::array::from_fn(|k| values[first + k]));
+    let vector_at_index = |first: usize| Vec3(std::array::from_fn(|k| values[first + k]));
     let (is_cut, is_own) = (values[1], values[2]);
-    let line = PolytopeFrame::select(is_own, own, other);
-    let plane = PolytopeFrame::select(is_own, other, own);
-    let (start, along) = (line.position(vector(3)), line.direction(vector(6)));
-    let normal = plane.direction(vector(9));
+    let line = PolytopeFrame::select_frame_by_indicator(is_own, own, other);
+    let plane = PolytopeFrame::select_frame_by_indicator(is_own, other, own);
+    let (start, along) =
+        (line.position_in_common_axes(vector_at_index(3)), line.direction_in_common_axes(vector_at_index(6)));
+    let normal = plane.direction_in_common_axes(vector_at_index(9));
     let height = normal.dot(start - plane.origin) - values[12];
     let slope = normal.dot(along) + (is_cut.num(1.0) - is_cut);
     start - along * (height * is_cut / slope)

@@ -6,7 +6,7 @@ use super::surface::{Surface, SurfaceForm};
 use super::terrain::read_terrain;
 use crate::diag::{Diagnostics, join_names_with_and};
 use crate::expr::{Expr, Vec3};
-use crate::language::{Argument, ArgumentKind, Method, SurfaceId};
+use crate::language::{Argument, ArgumentKind, BodyOrInertiaMethod, SurfaceId};
 use crate::mechanism::Rule;
 use crate::resolve::scope::{AllowedQuantities, Context, Scope};
 use crate::syntax::{self, ExprKind, GROUND};
@@ -30,7 +30,7 @@ pub fn read_surface<'g>(
         };
         return None;
     };
-    let Some(Method::Surface(id)) = word.id else {
+    let Some(BodyOrInertiaMethod::Surface(id)) = word.id else {
         let error = cx.report_error(word.place.clone(), format!("unknown surface `{}`", word.text));
         error.suggest_name(&word.text, SurfaceId::names());
         if error.has_no_help() {
@@ -70,7 +70,7 @@ pub fn read_surface<'g>(
     for (e, Argument { name, kind }) in arguments.iter().zip(row.arguments) {
         let context = Context::new(AllowedQuantities::Constant, None);
         if kind.is_direction() {
-            axis = Some(scope.call_in_context(context, |s| s.unit_vector(e, false, cx))?);
+            axis = Some(scope.call_in_context(context, |s| s.resolve_unit_vector(e, false, cx))?);
             continue;
         }
         let value = scope.call_in_context(context, |s| s.resolve_scalar(e, cx))?;
@@ -79,18 +79,22 @@ pub fn read_surface<'g>(
             return None;
         }
         let rule = if is_angle { Rule::HalfAngle } else { Rule::Positive };
-        let quantity = || format!("the {} of a {}", name.replace('_', " "), row.name);
-        scope.record_parameter_condition(rule, quantity, &[value]);
+        let describe_quantity = || format!("the {} of a {}", name.replace('_', " "), row.name);
+        scope.record_parameter_condition(rule, describe_quantity, &[value]);
         numbers.push(value);
     }
     Some(Surface {
         frame: frame?,
-        form: form(id, &numbers, axis.unwrap_or_else(|| Vec3::zero(scope.graph)))?,
+        form: surface_form_from_numbers(id, &numbers, axis.unwrap_or_else(|| Vec3::zero(scope.graph)))?,
     })
 }
 
 /// Returns the form of a surface with the values of its lengths and angles, and its direction.
-fn form<'g>(id: SurfaceId, numbers: &[Expr<'g>], n: Vec3<'g>) -> Option<SurfaceForm<'g>> {
+fn surface_form_from_numbers<'g>(
+    id: SurfaceId,
+    numbers: &[Expr<'g>],
+    n: Vec3<'g>,
+) -> Option<SurfaceForm<'g>> {
     let number_with_index = |k: usize| numbers.get(k).copied();
     Some(match id {
         SurfaceId::Circle => SurfaceForm::Circle(number_with_index(0)?, n),

@@ -23,7 +23,7 @@ pub fn slipping_rows<'g>(
         friction_and_regularisation_speed(scope, model, constraint, cx),
     );
     let (Some(pair), Some((coefficient, speed))) = found else { return None };
-    let Some(contact) = pair.contact() else {
+    let Some(contact) = pair.contact_of_pair() else {
         cx.report_error(constraint.value.place.clone(), "these surfaces touch along a line").add_help(
             "the point on it where friction acts is not determined: use a surface that touches at a \
              point",
@@ -50,7 +50,7 @@ fn friction_and_regularisation_speed<'g>(
     constraint: &syntax::Constraint,
     cx: &mut Diagnostics,
 ) -> Option<(Expr<'g>, Expr<'g>)> {
-    let written = constraint.arguments.get(Key::Friction)?;
+    let written = constraint.arguments.expression_of_key(Key::Friction)?;
     let ground = Some((None, Pose::identity(scope.graph)));
     let coefficient = scope.call_in_context(Context::new(AllowedQuantities::Placement, ground), |s| {
         s.resolve_scalar(written, cx)
@@ -68,7 +68,7 @@ fn friction_and_regularisation_speed<'g>(
         || format!("the friction of `{name}`"),
         &[coefficient],
     );
-    let Some(written) = constraint.arguments.get(Key::Speed) else {
+    let Some(written) = constraint.arguments.expression_of_key(Key::Speed) else {
         return Some((coefficient, model.friction_speed));
     };
     let speed = scope.call_in_context(Context::new(AllowedQuantities::Constant, None), |s| {

@@ -29,7 +29,7 @@ pub(super) struct ContactCompliance<'g> {
 
 impl<'g> ContactCompliance<'g> {
     /// Returns the effects of a contact point: potential energy of the penetration, dissipation and friction.
-    pub(super) fn effects_of_contact_point(
+    pub(super) fn forces_of_contact_point(
         &self,
         point: &CandidatePoint<'g>,
         coefficients: ContactCoefficients<'g>,
@@ -78,7 +78,7 @@ pub(super) fn read_compliance<'g>(
     cx: &mut Diagnostics,
 ) -> Option<ContactCompliance<'g>> {
     let g = scope.graph;
-    let mut read = |e: &syntax::Expr, what: &str, rule: Rule| {
+    let mut read_checked_constant = |e: &syntax::Expr, what: &str, rule: Rule| {
         let value = scope
             .call_in_context(Context::new(AllowedQuantities::Constant, None), |s| s.resolve_scalar(e, cx))?;
         let positive = rule == Rule::Positive;
@@ -90,14 +90,14 @@ pub(super) fn read_compliance<'g>(
         scope.record_parameter_condition(rule, || format!("the {what} of a contact"), &[value]);
         Some(value)
     };
-    let (linear, hertz) = (given.get(Key::Stiffness), given.get(Key::Hertz));
-    let stiffness = linear.or(hertz).and_then(|e| read(e, "stiffness", Rule::Positive));
-    let dissipation = match given.get(Key::Dissipation) {
-        Some(e) => read(e, "dissipation", Rule::NotNegative),
+    let (linear, hertz) = (given.expression_of_key(Key::Stiffness), given.expression_of_key(Key::Hertz));
+    let stiffness = linear.or(hertz).and_then(|e| read_checked_constant(e, "stiffness", Rule::Positive));
+    let dissipation = match given.expression_of_key(Key::Dissipation) {
+        Some(e) => read_checked_constant(e, "dissipation", Rule::NotNegative),
         None => Some(g.zero()),
     };
-    let speed = match given.get(Key::Speed) {
-        Some(e) => read(e, "speed", Rule::Positive),
+    let speed = match given.expression_of_key(Key::Speed) {
+        Some(e) => read_checked_constant(e, "speed", Rule::Positive),
         None => Some(g.num(DEFAULT_SLIP_SPEED)),
     };
     Some(ContactCompliance {

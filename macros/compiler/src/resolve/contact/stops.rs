@@ -25,11 +25,11 @@ pub fn resolve_stops<'g>(
     let g = scope.graph;
     let resolve_bound_value = |e: &syntax::Expr| match turns && e.place.file.is_none() {
         // Errors are reported by the pass that reads the limit.
-        true => scope.resolve_angle_in_radians(e, &mut Diagnostics::discarded_diagnostics()),
-        false => scope.resolve_scalar(e, &mut Diagnostics::discarded_diagnostics()),
+        true => scope.resolve_angle_in_radians(e, &mut Diagnostics::unprinted_diagnostics()),
+        false => scope.resolve_scalar(e, &mut Diagnostics::unprinted_diagnostics()),
     };
     let stop_at_bound = |(key, side): (Key, f64)| {
-        let bound = resolve_bound_value(limit.arguments.get(key)?)?;
+        let bound = resolve_bound_value(limit.arguments.expression_of_key(key)?)?;
         let gap = (limited - bound) * g.num(side);
         let name = format!("{}.{}", limit.name.text, key.name());
         let coefficients = ContactCoefficients {
@@ -40,7 +40,7 @@ pub fn resolve_stops<'g>(
             restitution,
             of_impulses,
         };
-        Some(coefficients.contact(name, (gap, turns), None, vec![rate * g.num(side)]))
+        Some(coefficients.contact_with_coefficients(name, (gap, turns), None, vec![rate * g.num(side)]))
     };
     [(Key::From, 1.0), (Key::To, -1.0)].into_iter().filter_map(stop_at_bound).collect()
 }
@@ -52,7 +52,7 @@ fn limited_value_and_rate<'g>(
     cx: &mut Diagnostics,
 ) -> Option<(Expr<'g>, Expr<'g>, bool)> {
     let g = scope.graph;
-    if !scope.is_moving(&limit.on) {
+    if !scope.is_moving_expression(&limit.on) {
         let (c, angle) = resolve_limited_coordinate(scope, &limit.on, cx)?;
         let (q, v) = (c.q.expr(g), c.v.expr(g));
         let ratio = g.num(c.ratio);

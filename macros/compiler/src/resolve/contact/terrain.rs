@@ -4,7 +4,7 @@
 use super::geometry::{PointContact, tangents_of};
 use crate::diag::Diagnostics;
 use crate::expr::diff::DirectionalDerivative;
-use crate::expr::replace::replace_all;
+use crate::expr::replace::substitute_symbols_in_all;
 use crate::expr::{Expr, Extreme, Vec3};
 use crate::kinematics::symbols_in;
 use crate::mechanism::{Quantity, SuppliedQuantity};
@@ -67,25 +67,27 @@ impl<'g> Terrain<'g> {
         let place =
             [(0, x), (1, y)].map(|(k, e)| (Quantity::Given(SuppliedQuantity::Position, k).symbol(), e));
         let all = [&[self.height][..], &self.slopes, &self.curvatures].concat();
-        let found = replace_all(&all, &|s| place.iter().find(|(known, _)| *known == s).map(|(_, e)| *e));
-        let entry_at_position = |k: usize| found.get(k).copied().unwrap_or(self.height);
+        let found = substitute_symbols_in_all(&all, &|s| {
+            place.iter().find(|(known, _)| *known == s).map(|(_, e)| *e)
+        });
+        let evaluated_entry_at = |k: usize| found.get(k).copied().unwrap_or(self.height);
         TerrainPoint {
-            height: entry_at_position(0),
-            slopes: [entry_at_position(1), entry_at_position(2)],
-            curvatures: [entry_at_position(3), entry_at_position(4), entry_at_position(5)],
+            height: evaluated_entry_at(0),
+            slopes: [evaluated_entry_at(1), evaluated_entry_at(2)],
+            curvatures: [evaluated_entry_at(3), evaluated_entry_at(4), evaluated_entry_at(5)],
         }
     }
 
     /// Returns the contact with a sphere around `c`, a position in the terrain's axes. A point is a sphere of
     /// radius zero.
-    pub(super) fn contact(
+    pub(super) fn sphere_contact(
         &self,
         radius: Expr<'g>,
         c: Vec3<'g>,
         rotate: &dyn Fn(Vec3<'g>) -> Vec3<'g>,
     ) -> PointContact<'g> {
         let below = self.evaluate([c[0], c[1]]);
-        let nearest = self.nearest(radius, c, &below);
+        let nearest = self.nearest_terrain_point(radius, c, &below);
         let normal = rotate(nearest.normal);
         let (first, second) = tangents_of(normal);
         PointContact {
@@ -99,7 +101,12 @@ impl<'g> Terrain<'g> {
     /// Returns the nearest point of the terrain, by Newton's method from the point straight below. The
     /// nearest point of a sphere far above may be ambiguous. Such a sphere is lowered for the iteration, and
     /// the omitted height is added to the distance.
-    fn nearest(&self, radius: Expr<'g>, c: Vec3<'g>, below: &TerrainPoint<'g>) -> NearestTerrainPoint<'g> {
+    fn nearest_terrain_point(
+        &self,
+        radius: Expr<'g>,
+        c: Vec3<'g>,
+        below: &TerrainPoint<'g>,
+    ) -> NearestTerrainPoint<'g> {
         let above = c[2] - below.height;
         if radius.is_zero() {
             return NearestTerrainPoint { normal: below.normal(), distance: above / below.normal_length() };

@@ -4,19 +4,19 @@ use super::coefficients::{ContactCoefficients, read_contact_coefficients};
 use super::collision::read_collisions;
 use super::force::report_friction_without_rotation;
 use super::geometry::CandidatePoint;
-use super::pair::surfaces_in_known_order;
+use super::pair::surfaces_in_accepted_order;
 use super::read::read_surface;
 use super::soft::read_compliance;
 use super::surface::{Surface, SurfaceForm};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{Expr, Vec3};
 use crate::kinematics::{time_derivatives_along_motion, velocity_gradient};
-use crate::language::{Method, OtherKind};
+use crate::language::{BodyOrInertiaMethod, OtherKind};
 use crate::mechanism::{Contact, Model, PolytopePair, Quantity};
 use crate::resolve::element_forces::Forces;
 use crate::resolve::power::{is_power_used, power_of_element};
-use crate::resolve::scope::{ContactLoads, ElementPower, Scope, Terms};
-use crate::syntax::contact::collision_link;
+use crate::resolve::scope::{ContactLoads, ElementPower, Scope, VectorTerms};
+use crate::syntax::contact::link_in_collision_expression;
 use crate::syntax::{self, ExprKind, GROUND};
 
 const SUPPORTED_PAIRS: &str = "supported are points, spheres, circles, tori, ellipsoids, capsules, cuboids, \
@@ -40,7 +40,7 @@ pub struct ResolvedContact<'g> {
     /// Rigid contact points, and their friction against spin and rolling.
     pub contacts: Vec<Contact<'g>>,
     /// Positions of the rigid contact points, by the names of their contacts.
-    pub points: Vec<(String, Terms<'g>)>,
+    pub points: Vec<(String, VectorTerms<'g>)>,
     /// Pairs of polytopes whose features determine contact points.
     pub polytopes: Vec<PolytopePair<'g>>,
     /// Forces of a compliant contact.
@@ -62,11 +62,11 @@ pub fn resolve_contact<'g>(
     cx: &mut Diagnostics,
 ) -> Option<ResolvedContact<'g>> {
     let coefficients = read_contact_coefficients(scope, contact, cx);
-    let firsts = contact_surfaces(scope, &contact.first, cx);
+    let firsts = surfaces_of_contact_side(scope, &contact.first, cx);
     // Two bodies written instead of two surfaces are one error.
     let seconds = match firsts {
         None if !matches!(contact.second.kind, ExprKind::Method(..) | ExprKind::Call(..)) => None,
-        _ => contact_surfaces(scope, &contact.second, cx),
+        _ => surfaces_of_contact_side(scope, &contact.second, cx),
     };
     let soft = contact.is_compliant().then(|| read_compliance(scope, &contact.arguments, cx));
     let (firsts, seconds, coefficients) = (firsts?, seconds?, coefficients?);
@@ -93,7 +93,7 @@ pub fn resolve_contact<'g>(
         let name = if several { format!("{name}.{k}") } else { name.clone() };
         match &soft {
             Some(soft) => {
-                let forces = soft.effects_of_contact_point(point, coefficients, &mut parts.loads);
+                let forces = soft.forces_of_contact_point(point, coefficients, &mut parts.loads);
                 parts.forces.potentials.extend(forces.potentials);
                 parts.forces.loads.extend(forces.loads);
             }
@@ -121,7 +121,9 @@ fn separable_points<'g>(
 ) -> Option<Vec<CandidatePoint<'g>>> {
     let place = contact.first.place.extend_to_end_of(&contact.second.place);
     let is_of_file = contact.of_file.is_some()
-        || [&contact.first, &contact.second].iter().any(|e| matches!(collision_link(e), Some(None)));
+        || [&contact.first, &contact.second]
+            .iter()
+            .any(|e| matches!(link_in_collision_expression(e), Some(None)));
     let mut points: Vec<CandidatePoint<'g>> = Vec::new();
     for first in firsts {
         for second in seconds {
@@ -166,7 +168,12 @@ impl<'g> ResolvedContact<'g> {
         });
         self.points.push((name.clone(), point.place.clone()));
         let rates = rates.into_iter().map(|(_, rate)| rate).collect();
-        self.contacts.push(coefficients.contact(name.clone(), (point.gap, false), None, rates));
+        self.contacts.push(coefficients.contact_with_coefficients(
+            name.clone(),
+            (point.gap, false),
+            None,
+            rates,
+        ));
         for (word, about, coefficient) in
             [("spin", 0..1, coefficients.torsional), ("roll", 1..3, coefficients.rolling)]
         {
@@ -185,7 +192,7 @@ impl<'g> ResolvedContact<'g> {
                     ..coefficients
                 };
                 let name = format!("{name}.{word}");
-                self.contacts.push(coefficients.contact(
+                self.contacts.push(coefficients.contact_with_coefficients(
                     name,
                     (point.gap, false),
                     Some(normal_contact),
@@ -223,7 +230,7 @@ fn contact_candidate_points<'g>(
     cx: &mut Diagnostics,
 ) -> Option<Vec<CandidatePoint<'g>>> {
     let first_link = first.frame.link;
-    let mut pair = surfaces_in_known_order(
+    let mut pair = surfaces_in_accepted_order(
         scope,
         model,
         first.clone(),
@@ -242,7 +249,7 @@ fn contact_candidate_points<'g>(
     let is_listed = pair.a.form.supports_contact_with(&pair.b.form);
     let candidate_contacts = match &pair.b.form {
         _ if !is_listed => Vec::new(),
-        SurfaceForm::Hull(_) | SurfaceForm::Drum(..) if pair.has_selected_features() => {
+        SurfaceForm::Hull(_) | SurfaceForm::Drum(..) if pair.features_are_selected_at_runtime() => {
             let known = polytopes.iter().map(PolytopePair::feature_count).sum::<usize>();
             match pair.polytope_contacts(model.polytope_feature_count() + known) {
                 Ok((polytope_pair, contacts)) => {
@@ -281,16 +288,16 @@ fn contact_candidate_points<'g>(
 
 /// Returns the surfaces of one side of a contact: a surface, a point, or the collision geometry of a
 /// file.
-fn contact_surfaces<'g>(
+fn surfaces_of_contact_side<'g>(
     scope: &Scope<'_, 'g>,
     e: &syntax::Expr,
     cx: &mut Diagnostics,
 ) -> Option<Vec<Surface<'g>>> {
-    if let Some(link) = collision_link(e) {
+    if let Some(link) = link_in_collision_expression(e) {
         return read_collisions(scope, e, link, cx);
     }
     let is_place = match &e.kind {
-        ExprKind::Method(_, word, _) => word.id == Some(Method::At),
+        ExprKind::Method(_, word, _) => word.id == Some(BodyOrInertiaMethod::At),
         ExprKind::Name(name) => name != GROUND,
         _ => false,
     };

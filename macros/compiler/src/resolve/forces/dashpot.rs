@@ -14,7 +14,7 @@ pub fn dashpot_force<'g>(
     on: ForceElementCoordinate<'g>,
     cx: &mut Diagnostics,
 ) -> Option<Forces<'g>> {
-    let damping = action.get(Key::Damping);
+    let damping = action.expression_of_key(Key::Damping);
     if let (Some(written), Some(on)) = (damping, on.coordinate) {
         let damping = scope.resolve_scalar(written, cx)?;
         if let Some(d) = damping.constant_value().filter(|d| *d < 0.0) {
@@ -34,7 +34,7 @@ pub fn dashpot_force<'g>(
         None => {
             let ground = Some((None, Pose::identity(scope.graph)));
             let context = Context::new(AllowedQuantities::Motion, ground).with_locals(vec![("speed", rate)]);
-            let written = action.get(Key::Force)?;
+            let written = action.expression_of_key(Key::Force)?;
             scope.call_in_context(context, |scope| scope.resolve_scalar(written, cx))?
         }
     };

@@ -22,8 +22,8 @@ pub fn friction_force<'g>(
     dry_friction(
         scope,
         on.stretch(scope)?.rate,
-        all.map(|key| action.get(key)),
-        action.on.source_position(),
+        all.map(|key| action.expression_of_key(key)),
+        action.on.source_position_of_target(),
         cx,
     )
 }
@@ -38,28 +38,36 @@ pub fn dry_friction<'g>(
     cx: &mut Diagnostics,
 ) -> Option<Forces<'g>> {
     let g = scope.graph;
-    let mut value = |e: Option<&syntax::Expr>, default: f64| match e {
+    let mut resolve_scalar_or_default = |e: Option<&syntax::Expr>, default: f64| match e {
         Some(e) => scope.resolve_scalar(e, cx),
         None => Some(g.num(default)),
     };
-    let (fc, c, v0) = (value(coulomb, 0.0), value(viscous, 0.0), value(speed, FRICTION_SPEED));
-    let (fs, vs) = (stiction.map(|e| value(Some(e), 0.0)), stribeck.map(|e| value(Some(e), 0.0)));
-    let mut check = |written: Option<&syntax::Expr>, found: Option<Expr<'g>>, positive: bool, what: &str| {
-        if let Some(found) = found {
-            let rule = if positive { Rule::Positive } else { Rule::NotNegative };
-            scope.record_parameter_condition(rule, || format!("a {what} of dry friction"), &[found]);
-        }
-        let (Some(written), Some(n)) = (written, found.and_then(|e| e.constant_value())) else { return };
-        if n < 0.0 || positive && n == 0.0 {
-            let must = if positive { "must be positive" } else { "cannot be negative" };
-            cx.report_error(written.place.clone(), format!("this {what} {must}, but it is {n}"));
-        }
-    };
+    let (fc, c, v0) = (
+        resolve_scalar_or_default(coulomb, 0.0),
+        resolve_scalar_or_default(viscous, 0.0),
+        resolve_scalar_or_default(speed, FRICTION_SPEED),
+    );
+    let (fs, vs) = (
+        stiction.map(|e| resolve_scalar_or_default(Some(e), 0.0)),
+        stribeck.map(|e| resolve_scalar_or_default(Some(e), 0.0)),
+    );
+    let mut check_coefficient_sign =
+        |written: Option<&syntax::Expr>, found: Option<Expr<'g>>, positive: bool, what: &str| {
+            if let Some(found) = found {
+                let rule = if positive { Rule::Positive } else { Rule::NotNegative };
+                scope.record_parameter_condition(rule, || format!("a {what} of dry friction"), &[found]);
+            }
+            let (Some(written), Some(n)) = (written, found.and_then(|e| e.constant_value())) else { return };
+            if n < 0.0 || positive && n == 0.0 {
+                let must = if positive { "must be positive" } else { "cannot be negative" };
+                cx.report_error(written.place.clone(), format!("this {what} {must}, but it is {n}"));
+            }
+        };
     for (written, found) in [(coulomb, fc), (stiction, fs.flatten()), (viscous, c)] {
-        check(written, found, false, "friction");
+        check_coefficient_sign(written, found, false, "friction");
     }
     for (written, found) in [(stribeck, vs.flatten()), (speed, v0)] {
-        check(written, found, true, "speed");
+        check_coefficient_sign(written, found, true, "speed");
     }
     let (Some(fc), Some(c), Some(v0)) = (fc, c, v0) else { return None };
     let dry = match (fs, vs) {

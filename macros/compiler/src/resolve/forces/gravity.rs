@@ -4,7 +4,7 @@ use crate::diag::Diagnostics;
 use crate::expr::{Expr, Vec3};
 use crate::resolve::element_forces::Forces;
 use crate::resolve::scope::Scope;
-use crate::resolve::terms::{ForceElementCoordinate, Stretch, distance_between_points};
+use crate::resolve::terms::{ForceElementCoordinate, StretchWithRate, distance_between_points};
 use crate::syntax::{self, Action, ExprKind, Key, Target};
 
 /// Returns the inverse-square force of an attraction between two points.
@@ -15,7 +15,7 @@ pub fn attraction_force<'g>(
     cx: &mut Diagnostics,
 ) -> Option<Forces<'g>> {
     let stretch = on.stretch(scope)?;
-    let strength = scope.resolve_scalar(action.get(Key::Strength)?, cx)?;
+    let strength = scope.resolve_scalar(action.expression_of_key(Key::Strength)?, cx)?;
     Some(Forces::forces_of_potentials([attraction_energy(&stretch, strength)]))
 }
 
@@ -28,7 +28,7 @@ pub fn central_gravity_force<'g>(
 ) -> Option<Forces<'g>> {
     let Target::Between(first, second) = &action.on else {
         cx.report_error(
-            action.on.source_position().clone(),
+            action.on.source_position_of_target().clone(),
             "gravity acts between two bodies, or a point and a body",
         )
         .add_help(
@@ -40,7 +40,7 @@ pub fn central_gravity_force<'g>(
     // An unresolved position has already been reported.
     let is_placed = stretch.is_some();
     let mut mass = |e: &syntax::Expr| if is_placed { mass_of_named_body(scope, e, cx) } else { None };
-    match (action.get(Key::Constant), action.get(Key::Mu)) {
+    match (action.expression_of_key(Key::Constant), action.expression_of_key(Key::Mu)) {
         (Some(constant), None) => {
             let masses = [mass(first), mass(second)];
             let g = scope.resolve_scalar(constant, cx)?;
@@ -94,7 +94,7 @@ fn mass_of_named_body<'g>(scope: &Scope<'_, 'g>, e: &syntax::Expr, cx: &mut Diag
 
 /// Returns the potential energy `−strength / distance` of an attraction `strength / distance²`. The energy is
 /// infinite if the points coincide; it has no limit there.
-fn attraction_energy<'g>(stretch: &Stretch<'g>, strength: Expr<'g>) -> Expr<'g> {
+fn attraction_energy<'g>(stretch: &StretchWithRate<'g>, strength: Expr<'g>) -> Expr<'g> {
     -(strength / stretch.square.sqrt())
 }
 
@@ -112,10 +112,10 @@ fn central_gravity_torque_energy<'g>(
     let (center, body) = (scope.resolve_placement(center, cx), scope.resolve_placement(body, cx));
     let (center, body) = (center?, body?);
     let (_, _, central) = *scope.kinematics.masses.get(name)?;
-    let tensor = body.pose.rotation.sym_to_parent(central);
+    let tensor = body.pose.rotation.symmetric_tensor_in_parent_axes(central);
     let kinematics = &scope.kinematics;
     let terms = kinematics.position_between(&body, &center);
-    let r = kinematics.resolve(&terms, body.link, Vec3::zero(scope.graph));
+    let r = kinematics.components_in_link_axes(&terms, body.link, Vec3::zero(scope.graph));
     let length = r.norm();
     let n = r.map(|c| c / length);
     let trace = tensor.diagonal[0] + tensor.diagonal[1] + tensor.diagonal[2];

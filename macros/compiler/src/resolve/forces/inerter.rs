@@ -15,7 +15,7 @@ pub fn inerter_force<'g>(
     on: ForceElementCoordinate<'g>,
     cx: &mut Diagnostics,
 ) -> Option<Forces<'g>> {
-    inertance_force(scope, on.stretch(scope)?.rate, action.get(Key::Inertance)?, cx)
+    inertance_force(scope, on.stretch(scope)?.rate, action.expression_of_key(Key::Inertance)?, cx)
 }
 
 /// Returns the force of an inertance on the rate of a length.

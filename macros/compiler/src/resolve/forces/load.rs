@@ -5,7 +5,7 @@ use crate::expr::diff::DirectionalDerivative;
 use crate::expr::replace::substitute_symbols;
 use crate::expr::{Expr as Value, Function, Vec3};
 use crate::kinematics::symbols_in;
-use crate::mechanism::{AccelerationForce, Input, Load, Pose, Quantity, SumOfLinkVectors};
+use crate::mechanism::{AccelerationForce, InputEffect, Load, Pose, Quantity, SumOfLinkVectors};
 use crate::resolve::element_forces::Forces;
 use crate::resolve::scope::{AllowedQuantities, Context, Placed, PlacedElementKind, Scope};
 use crate::resolve::target::{ResolvedTarget, resolve_target};
@@ -13,10 +13,14 @@ use crate::resolve::terms::{coordinate_stretch, distance_between_points};
 use crate::syntax::{Action, Expr, ExprKind, Key, Target};
 
 /// Returns a force or a torque, with a value or as an input.
-pub fn load<'g>(scope: &Scope<'_, 'g>, action: &Action, cx: &mut Diagnostics) -> Option<Forces<'g>> {
+pub fn force_or_torque_of_action<'g>(
+    scope: &Scope<'_, 'g>,
+    action: &Action,
+    cx: &mut Diagnostics,
+) -> Option<Forces<'g>> {
     let torque = action.kind.row().torque;
-    let direction = action.get(if torque { Key::About } else { Key::Along });
-    match (&action.on, action.get(Key::Value)) {
+    let direction = action.expression_of_key(if torque { Key::About } else { Key::Along });
+    match (&action.on, action.expression_of_key(Key::Value)) {
         (Target::On(on), None) => {
             let target = resolve_target(scope, on, cx)?;
             resolve_input_force(scope, action, on, target, direction, torque, cx)
@@ -61,9 +65,9 @@ fn force_of_expression_value<'g>(
         return None;
     };
     let context = Context::new(AllowedQuantities::Acceleration, Some((place.link, place.pose.clone())));
-    let terms = scope.call_in_context(context, |scope| scope.resolve_terms(value, cx))?;
+    let terms = scope.call_in_context(context, |scope| scope.resolve_vector_terms(value, cx))?;
     let kinematics = &scope.kinematics;
-    let force = kinematics.resolve(&terms, place.link, Vec3::zero(scope.graph));
+    let force = kinematics.components_in_link_axes(&terms, place.link, Vec3::zero(scope.graph));
     let twist = kinematics.twists[link.0];
     let rate = match torque {
         true => twist.angular,
@@ -139,7 +143,7 @@ fn resolve_input_force<'g>(
         }
         ResolvedTarget::Coordinate(c, _) => {
             refuse_direction("joint");
-            Input::Coordinate(c)
+            InputEffect::Coordinate(c)
         }
         ResolvedTarget::Expression(stretch) => {
             refuse_direction("expression");
@@ -148,14 +152,15 @@ fn resolve_input_force<'g>(
         ResolvedTarget::Point(place) => {
             match point_input(scope, action, on, &place, direction, torque, cx)? {
                 // The point moves on its body.
-                Input::Force { link, point, along } if is_moving(point) => {
+                InputEffect::Force { link, point, along } if is_moving_vector(point) => {
                     let kinematics = &scope.kinematics;
                     let twist = &kinematics.twists[link.0];
-                    let along = kinematics.resolve(&along, Some(link), Vec3::zero(scope.graph));
+                    let along =
+                        kinematics.components_in_link_axes(&along, Some(link), Vec3::zero(scope.graph));
                     let rate = (twist.linear + twist.angular.cross(point)).dot(along);
                     return Some(load_of_input(scope.input_index(&action.name.text)?, rate));
                 }
-                Input::Torque { .. } if is_moving(place.pose.translation) => return None,
+                InputEffect::Torque { .. } if is_moving_vector(place.pose.translation) => return None,
                 input => input,
             }
         }
@@ -229,7 +234,7 @@ fn point_input<'g>(
     direction: Option<&Expr>,
     torque: bool,
     cx: &mut Diagnostics,
-) -> Option<Input<'g>> {
+) -> Option<InputEffect<'g>> {
     let Some(direction) = direction else {
         let key = if torque { "about" } else { "along" };
         cx.report_error(action.name.place.clone(), format!("missing `{key}`"))
@@ -240,7 +245,7 @@ fn point_input<'g>(
         return None;
     }
     let context = Context::new(AllowedQuantities::Constant, Some((place.link, place.pose.clone())));
-    let terms = scope.call_in_context(context, |scope| scope.resolve_terms(direction, cx))?;
+    let terms = scope.call_in_context(context, |scope| scope.resolve_vector_terms(direction, cx))?;
     let Some(link) = place.link else {
         cx.report_error(on.place.clone(), "this body is fixed to the ground: a force on it has no effect")
             .add_help("name a body that moves");
@@ -253,13 +258,13 @@ fn point_input<'g>(
         return None;
     }
     Some(match torque {
-        true => Input::Torque { link, about: sum },
-        false => Input::Force { link, point: place.pose.translation, along: sum },
+        true => InputEffect::Torque { link, about: sum },
+        false => InputEffect::Force { link, point: place.pose.translation, along: sum },
     })
 }
 
 /// Whether a vector depends on the configuration or on time.
-fn is_moving(v: Vec3<'_>) -> bool {
+fn is_moving_vector(v: Vec3<'_>) -> bool {
     let is_moving_symbol =
         |s| matches!(Quantity::from_symbol(s), Quantity::Configuration(_) | Quantity::Time);
     symbols_in(&v.0).into_iter().any(is_moving_symbol)

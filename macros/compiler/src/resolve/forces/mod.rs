@@ -44,7 +44,7 @@ pub fn forces_of_element<'g>(
 ) -> Option<Forces<'g>> {
     let forces = match action.kind {
         ForceKind::Gravity => return gravity::central_gravity_force(scope, action, cx),
-        ForceKind::Force | ForceKind::Torque => return load::load(scope, action, cx),
+        ForceKind::Force | ForceKind::Torque => return load::force_or_torque_of_action(scope, action, cx),
         ForceKind::Spring => spring::spring_force,
         ForceKind::Dashpot => dashpot::dashpot_force,
         ForceKind::Inerter => inerter::inerter_force,
@@ -92,7 +92,7 @@ fn needs_positions_and_velocities(action: &Action) -> bool {
     let own = match action.kind {
         ForceKind::Force | ForceKind::Torque => !action.is_input(),
         ForceKind::Gravity | ForceKind::Attraction => true,
-        ForceKind::Dashpot => action.get(Key::Force).is_some(),
+        ForceKind::Dashpot => action.expression_of_key(Key::Force).is_some(),
         ForceKind::Spring | ForceKind::Inerter | ForceKind::Friction => false,
     };
     // A point given by a vector may move on its body.

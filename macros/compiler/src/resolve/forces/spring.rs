@@ -9,7 +9,7 @@ use crate::language::Callable;
 use crate::mechanism::{Pose, Quantity, Spring};
 use crate::resolve::element_forces::Forces;
 use crate::resolve::scope::{AllowedQuantities, Context, Scope};
-use crate::resolve::terms::{ForceElementCoordinate, Stretch};
+use crate::resolve::terms::{ForceElementCoordinate, StretchWithRate};
 use crate::syntax::{self, Action, ExprKind, Key};
 use std::collections::BTreeSet;
 
@@ -53,7 +53,7 @@ pub fn spring_force<'g>(
 /// Returns the force of a spring with any force law.
 pub fn spring_force_of_law<'g>(
     scope: &Scope<'_, 'g>,
-    stretch: Stretch<'g>,
+    stretch: StretchWithRate<'g>,
     law: &SpringLaw<'_>,
     free: Expr<'g>,
     cx: &mut Diagnostics,
@@ -174,9 +174,9 @@ fn free_length<'g>(
     angle: Option<bool>,
     cx: &mut Diagnostics,
 ) -> Option<Expr<'g>> {
-    let free_angle = action.get(Key::FreeAngle);
+    let free_angle = action.expression_of_key(Key::FreeAngle);
     let is_angle = free_angle.is_some();
-    let Some(free) = action.get(Key::FreeLength).or(free_angle) else {
+    let Some(free) = action.expression_of_key(Key::FreeLength).or(free_angle) else {
         return Some(scope.graph.zero());
     };
     if let Some(angle) = angle.filter(|angle| *angle != is_angle) {

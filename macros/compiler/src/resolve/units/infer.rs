@@ -8,8 +8,8 @@
 //! the unit that it needs.
 
 use super::unify::{DimensionSystem, EquationOutcome};
-use super::value::{Anchor, InferredUnit};
-use crate::language::dimension::{Dimension, PLAIN, Variable};
+use super::value::{InferredUnit, UnitSource};
+use crate::language::dimension::{Dimension, PLAIN, UnknownDimensionIndex};
 use crate::language::ratio::Ratio;
 use crate::syntax::{BinaryOp, Description, Expr, ExprKind};
 use std::collections::BTreeMap;
@@ -59,9 +59,9 @@ pub struct DimensionMismatch<'a> {
 #[derive(Clone, Debug)]
 pub enum UnitMeaningOfName {
     /// The name is a parameter or a definition, whose dimension is an unknown.
-    Named(Variable, Anchor),
+    Named(UnknownDimensionIndex, UnitSource),
     /// The name is a coordinate or an input, whose dimension is known.
-    Moving(Dimension, Anchor),
+    Moving(Dimension, UnitSource),
 }
 
 /// Maximum number of contradictions between dimensions that are recorded.
@@ -75,13 +75,13 @@ pub struct Inference<'a> {
     /// of the parameters.
     pub names: BTreeMap<String, UnitMeaningOfName>,
     /// Unknown dimensions of each table, by name: those of its variables, followed by that of its values.
-    pub tables: BTreeMap<String, Vec<Variable>>,
+    pub tables: BTreeMap<String, Vec<UnknownDimensionIndex>>,
     /// Local names of the current expression, such as `stretch`.
     pub locals: Vec<(&'static str, Dimension)>,
     /// Origin of the equation that determined each unknown.
-    pub origins: BTreeMap<Variable, EquationOrigin<'a>>,
+    pub origins: BTreeMap<UnknownDimensionIndex, EquationOrigin<'a>>,
     /// Notation of each unknown's unit where its name is the whole expression.
-    pub hints: BTreeMap<Variable, String>,
+    pub hints: BTreeMap<UnknownDimensionIndex, String>,
     /// Magnitudes of the numbers in the mechanism's gravity, such as 9.81. A factor of this magnitude may
     /// have a dimension, even if it multiplies a parameter.
     pub gravity: Vec<f64>,
@@ -116,7 +116,7 @@ impl<'a> Inference<'a> {
             limit_exceeded: false,
         };
         for parameter in &description.parameters {
-            new.assign_unknown_dimension(&parameter.text, Anchor::Parameter);
+            new.assign_unknown_dimension(&parameter.text, UnitSource::Parameter);
         }
         for table in &description.tables {
             let unknown = (0..=table.variables).map(|_| new.system.add_unknown_dimension()).collect();
@@ -126,7 +126,7 @@ impl<'a> Inference<'a> {
     }
 
     /// Assigns an unknown dimension to a name.
-    pub fn assign_unknown_dimension(&mut self, name: &str, anchor: Anchor) {
+    pub fn assign_unknown_dimension(&mut self, name: &str, anchor: UnitSource) {
         let v = self.system.add_unknown_dimension();
         self.names.insert(name.to_string(), UnitMeaningOfName::Named(v, anchor));
     }
@@ -183,7 +183,8 @@ impl<'a> Inference<'a> {
 
     /// Whether two dimensions are known to be different.
     pub fn are_different_dimensions(&mut self, a: &Dimension, b: &Dimension) -> bool {
-        let quotient = a.dimension_of_quotient(b).and_then(|quotient| self.system.resolve(&quotient));
+        let quotient =
+            a.dimension_of_quotient(b).and_then(|quotient| self.system.substitute_solved_unknowns(&quotient));
         quotient.is_some_and(|quotient| quotient.is_known() && !quotient.is_plain())
     }
 
@@ -196,12 +197,14 @@ impl<'a> Inference<'a> {
         reason: DimensionEqualityReason<'a>,
     ) -> InferredUnit {
         let value = match &e.kind {
-            ExprKind::Binary(BinaryOp::Add | BinaryOp::Sub, ..) => self.value_of_sum(e, Some(dimension)),
-            _ => self.value_of_expression(e),
+            ExprKind::Binary(BinaryOp::Add | BinaryOp::Sub, ..) => {
+                self.inferred_unit_of_sum(e, Some(dimension))
+            }
+            _ => self.inferred_unit_of_expression(e),
         };
         let InferredUnit::Quantity { dimension: found, anchor } = value else { return value };
         // An expression of coordinates may have an implicit factor of one, with any unit.
-        if anchor == Anchor::Motion && self.are_different_dimensions(&found, dimension) {
+        if anchor == UnitSource::Motion && self.are_different_dimensions(&found, dimension) {
             return InferredUnit::Unknown;
         }
         if !self.equate_dimensions(
@@ -218,7 +221,7 @@ impl<'a> Inference<'a> {
     }
 
     /// Returns the unknown of an expression that is a single name.
-    fn unit_unknown_of_name(&self, e: &Expr) -> Option<Variable> {
+    fn unit_unknown_of_name(&self, e: &Expr) -> Option<UnknownDimensionIndex> {
         let dimension = match &e.kind {
             ExprKind::Neg(inner) => return self.unit_unknown_of_name(inner),
             ExprKind::Name(name) => match self.names.get(name)? {

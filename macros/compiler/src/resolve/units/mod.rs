@@ -12,14 +12,14 @@ mod value;
 mod walk;
 
 use crate::diag::Diagnostics;
-use crate::language::dimension::{self, Dimension, Variable};
-use crate::mechanism::{Chart, Constraint, Coordinate, Input, Measure, Model, Units};
+use crate::language::dimension::{self, Dimension, UnknownDimensionIndex};
+use crate::mechanism::{Chart, Constraint, Coordinate, InputEffect, MeasuredQuantity, Model, Units};
 use crate::syntax::RATE_OF_STATE;
 use crate::syntax::{Definition, Description, Expr, ExprKind, Rank};
 use infer::{DimensionEqualityReason, EquationOrigin, Inference, UnitMeaningOfName};
 use places::{DimensionedExpressions, DimensionedTask};
 use std::collections::{BTreeMap, BTreeSet};
-use value::{Anchor, InferredUnit};
+use value::{InferredUnit, UnitSource};
 
 /// Coordinates that expressions can name; the flag is true for an angle.
 pub type NameableCoordinates = [(String, Coordinate, bool)];
@@ -44,7 +44,8 @@ pub fn infer_units(
     }
     let definitions = assign_dimensions_to_names(d, coordinates, &mut inference);
     let mut places = places::collect_dimensioned_expressions(d, &definitions, &mut inference);
-    let outputs: Vec<Variable> = d.outputs.iter().map(|_| inference.system.add_unknown_dimension()).collect();
+    let outputs: Vec<UnknownDimensionIndex> =
+        d.outputs.iter().map(|_| inference.system.add_unknown_dimension()).collect();
     for (output, v) in d.outputs.iter().zip(&outputs) {
         // The expression of a diagram is a body, without a dimension. Laws of a file contain numbers with
         // units that the file does not specify.
@@ -129,13 +130,13 @@ fn assign_dimensions_to_names<'a>(
 ) -> Vec<&'a Definition> {
     for (name, _, angle) in coordinates {
         let dimension = if *angle { dimension::PLAIN } else { dimension::LENGTH };
-        inference.names.insert(name.clone(), UnitMeaningOfName::Moving(dimension, Anchor::Motion));
+        inference.names.insert(name.clone(), UnitMeaningOfName::Moving(dimension, UnitSource::Motion));
     }
     let acting: BTreeSet<&str> = d.actions.iter().map(|action| action.name.text.as_str()).collect();
     let free = d.coordinates.iter().map(|c| &c.name);
     for name in free.chain(&d.inputs) {
         let dimension = Dimension::unknown_dimension(inference.system.add_unknown_dimension());
-        let anchor = if acting.contains(name.text.as_str()) { Anchor::Input } else { Anchor::Motion };
+        let anchor = if acting.contains(name.text.as_str()) { UnitSource::Input } else { UnitSource::Motion };
         inference.names.insert(name.text.clone(), UnitMeaningOfName::Moving(dimension, anchor));
     }
     let definitions = sort_by_dependency(&d.definitions);
@@ -144,10 +145,10 @@ fn assign_dimensions_to_names<'a>(
             ExprKind::Name(name) => match inference.names.get(name)? {
                 UnitMeaningOfName::Named(_, anchor) | UnitMeaningOfName::Moving(_, anchor) => Some(*anchor),
             },
-            ExprKind::Call(table, _) => inference.tables.get(&table.text).map(|_| Anchor::Parameter),
+            ExprKind::Call(table, _) => inference.tables.get(&table.text).map(|_| UnitSource::Parameter),
             _ => None,
         });
-        let anchor = anchors.max().unwrap_or(Anchor::Motion);
+        let anchor = anchors.max().unwrap_or(UnitSource::Motion);
         inference.assign_unknown_dimension(&definition.name.text, anchor);
     }
     definitions
@@ -237,7 +238,7 @@ fn is_product_with_single_name(e: &Expr, inference: &Inference<'_>) -> bool {
         match factor.map(|f| &f.kind) {
             None | Some(ExprKind::Number(_) | ExprKind::Field(..)) => {}
             Some(ExprKind::Name(name)) => match inference.names.get(name) {
-                Some(UnitMeaningOfName::Named(_, Anchor::Motion | Anchor::Input)) => return false,
+                Some(UnitMeaningOfName::Named(_, UnitSource::Motion | UnitSource::Input)) => return false,
                 found => name_count += usize::from(found.is_some()),
             },
             Some(_) => return false,
@@ -251,8 +252,12 @@ fn is_product_with_single_name(e: &Expr, inference: &Inference<'_>) -> bool {
 
 /// Returns the notation of a dimension: the notation that the source uses for the name by itself, or the
 /// default one.
-fn notation_of_dimension(inference: &mut Inference<'_>, dimension: &Dimension, v: Variable) -> String {
-    let known = inference.system.resolve(dimension).filter(Dimension::is_known);
+fn notation_of_dimension(
+    inference: &mut Inference<'_>,
+    dimension: &Dimension,
+    v: UnknownDimensionIndex,
+) -> String {
+    let known = inference.system.substitute_solved_unknowns(dimension).filter(Dimension::is_known);
     match (known, inference.hints.get(&v)) {
         (None, _) => "any".to_string(),
         _ if inference.limit_exceeded => "any".to_string(),
@@ -305,7 +310,7 @@ fn state_and_input_units(
         }
     }
     for (name, input) in &model.inputs {
-        if let Input::Sum(_, unit) = input {
+        if let InputEffect::Sum(_, unit) = input {
             units.inputs.push(unit.to_string());
             continue;
         }
@@ -320,7 +325,7 @@ fn state_and_input_units(
 
 /// Returns the units of a coordinate and of its rate.
 fn coordinate_units(dimension: Dimension, inference: &mut Inference<'_>) -> (String, String) {
-    let v = dimension.unknown.first().map_or(Variable::MAX, |(v, _)| *v);
+    let v = dimension.unknown.first().map_or(UnknownDimensionIndex::MAX, |(v, _)| *v);
     let unit = notation_of_dimension(inference, &dimension, v);
     let rate = match unit.as_str() {
         "any" => "any".to_string(),
@@ -328,7 +333,7 @@ fn coordinate_units(dimension: Dimension, inference: &mut Inference<'_>) -> (Str
         _ => {
             let rate = dimension
                 .dimension_of_quotient(&dimension::TIME)
-                .and_then(|rate| inference.system.resolve(&rate));
+                .and_then(|rate| inference.system.substitute_solved_unknowns(&rate));
             rate.map_or("any".to_string(), |rate| si::unit_of_dimension(&rate))
         }
     };
@@ -336,9 +341,9 @@ fn coordinate_units(dimension: Dimension, inference: &mut Inference<'_>) -> (Str
 }
 
 /// Returns the unit of a generalized speed as text.
-fn generalized_speed_unit(v: Variable, inference: &mut Inference<'_>) -> String {
+fn generalized_speed_unit(v: UnknownDimensionIndex, inference: &mut Inference<'_>) -> String {
     let dimension = Dimension::unknown_dimension(v);
-    match inference.system.resolve(&dimension) {
+    match inference.system.substitute_solved_unknowns(&dimension) {
         Some(known) if known == dimension::RATE && !inference.limit_exceeded => "rad/s".to_string(),
         _ => notation_of_dimension(inference, &dimension, v),
     }
@@ -352,9 +357,11 @@ fn constraint_units(c: &Constraint<'_>, sides: &[Dimension], inference: &mut Inf
         false => (dimension::SPEED, dimension::RATE, dimension::POWER),
     };
     let dimension = match c.measure {
-        Measure::Length => Some(length),
-        Measure::Angle => Some(angle.clone()),
-        Measure::Declared(k) => sides.get(k).and_then(|side| inference.system.resolve(side)),
+        MeasuredQuantity::Length => Some(length),
+        MeasuredQuantity::Angle => Some(angle.clone()),
+        MeasuredQuantity::Declared(k) => {
+            sides.get(k).and_then(|side| inference.system.substitute_solved_unknowns(side))
+        }
     };
     let known = dimension.filter(|d| d.is_known() && !inference.limit_exceeded);
     let Some((dimension, multiplier)) =

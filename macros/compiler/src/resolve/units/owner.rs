@@ -71,7 +71,7 @@ fn expressions_with_owners(d: &Description) -> ExpressionsWithOwners<'_> {
         if let Target::Between(_, second) = &action.on {
             all.push(("between", name, second));
         }
-        all.extend(action.arguments.iter().map(|(key, e)| (key.name(), name, e)));
+        all.extend(action.arguments.keyed_expressions().map(|(key, e)| (key.name(), name, e)));
     }
     for point in &d.points {
         all.extend(point.at.iter().map(|e| ("at", point.name.text.as_str(), e)));
@@ -86,7 +86,7 @@ fn expressions_with_owners(d: &Description) -> ExpressionsWithOwners<'_> {
         let sides = [Some(&constraint.value), constraint.other.as_ref()].into_iter().flatten();
         all.extend(sides.map(|e| ("", constraint.name.text.as_str(), e)));
         let name = constraint.name.text.as_str();
-        all.extend(constraint.arguments.iter().map(|(key, e)| (key.name(), name, e)));
+        all.extend(constraint.arguments.keyed_expressions().map(|(key, e)| (key.name(), name, e)));
     }
     all
 }

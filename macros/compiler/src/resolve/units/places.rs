@@ -6,12 +6,14 @@ use crate::language::dimension::{
     ACCELERATION, Dimension, ENERGY, INERTIA, LENGTH, MASS, PLAIN, POWER, TIME,
 };
 use crate::language::ratio::Ratio;
-use crate::language::{Argument, ArgumentKind, ArgumentQuantity, Callable, ForceLawVariables, Key, Method};
+use crate::language::{
+    Argument, ArgumentKind, ArgumentQuantity, BodyOrInertiaMethod, Callable, ForceLawVariables, Key,
+};
 use crate::resolve::contact::TERRAIN_COORDINATES;
-use crate::syntax::contact::collision_link;
+use crate::syntax::contact::link_in_collision_expression;
 use crate::syntax::{
     Action, Body, Callee, Constraint, Definition, Description, Endpoint, Expr, ExprKind, Joint, Limit,
-    Member, Target, WrittenArguments, restitution_coefficient,
+    Member, Target, WrittenArguments, restitution_value_and_kind,
 };
 
 /// Expression whose dimension is known from its context.
@@ -79,7 +81,7 @@ pub fn collect_dimensioned_expressions<'a>(
     // Definitions have unknowns of their own, assigned to their names.
     for definition in definitions {
         if let Some(UnitMeaningOfName::Named(v, _)) = inference.names.get(&definition.name.text) {
-            places.add(&definition.value, &Dimension::unknown_dimension(*v), "");
+            places.add_with_dimension(&definition.value, &Dimension::unknown_dimension(*v), "");
         }
     }
     places.definitions = std::mem::take(&mut places.tasks);
@@ -89,12 +91,12 @@ pub fn collect_dimensioned_expressions<'a>(
         &Dimension::unknown_dimension(inference.system.add_unknown_dimension()),
         "",
     );
-    d.bodies.iter().filter(|b| b.name.place.file.is_none()).for_each(|b| places.add_body(b));
+    d.bodies.iter().filter(|b| b.name.place.file.is_none()).for_each(|b| places.add_expressions_of_body(b));
     for particle in &d.particles {
-        places.add(&particle.mass, &MASS, "kg");
+        places.add_with_dimension(&particle.mass, &MASS, "kg");
         particle.at.iter().for_each(|at| places.add_expressions_of_position(at));
     }
-    d.joints.iter().filter(|j| j.name.place.file.is_none()).for_each(|j| places.add_joint(j));
+    d.joints.iter().filter(|j| j.name.place.file.is_none()).for_each(|j| places.add_expressions_of_joint(j));
     for frame in &d.frames {
         places.add_expressions_of_rotations(&frame.rotations);
     }
@@ -103,9 +105,12 @@ pub fn collect_dimensioned_expressions<'a>(
         places.add_all_with_dimension(&point.at, &LENGTH, "m");
     }
     for action in &d.actions {
-        places.add_action(action, inference);
+        places.add_expressions_of_action(action, inference);
     }
-    d.limits.iter().filter(|l| l.on.place.file.is_none()).for_each(|l| places.add_limit(l, inference));
+    d.limits
+        .iter()
+        .filter(|l| l.on.place.file.is_none())
+        .for_each(|l| places.add_expressions_of_limit(l, inference));
     for (place, value) in d.equilibria.iter().flat_map(|e| &e.values) {
         places.add_value_at_rest(place, value, inference);
     }
@@ -120,16 +125,16 @@ pub fn collect_dimensioned_expressions<'a>(
         }
     }
     for (_, e) in &d.energies {
-        places.add(e, &ENERGY, "J");
+        places.add_with_dimension(e, &ENERGY, "J");
     }
     for (_, e) in &d.dissipations {
-        places.add(e, &POWER, "W");
+        places.add_with_dimension(e, &POWER, "W");
     }
     places
 }
 
 impl<'a> DimensionedExpressions<'a> {
-    fn add(&mut self, e: &'a Expr, dimension: &Dimension, unit: &'static str) {
+    fn add_with_dimension(&mut self, e: &'a Expr, dimension: &Dimension, unit: &'static str) {
         self.tasks.push(DimensionedTask { e, dimension: dimension.clone(), unit, locals: Vec::new() });
     }
 
@@ -139,19 +144,19 @@ impl<'a> DimensionedExpressions<'a> {
         dimension: &Dimension,
         unit: &'static str,
     ) {
-        e.into_iter().for_each(|e| self.add(e, dimension, unit));
+        e.into_iter().for_each(|e| self.add_with_dimension(e, dimension, unit));
     }
 
     /// Adds the arguments of a solid, a surface or a rotation.
     fn add_expected_argument_dimensions(&mut self, written: &'a [Expr], arguments: &[Argument]) {
         for (e, argument) in written.iter().zip(arguments) {
             if let Some((dimension, unit)) = argument.kind.dimension_and_unit() {
-                self.add(e, &dimension, unit);
+                self.add_with_dimension(e, &dimension, unit);
             }
         }
     }
 
-    fn add_body(&mut self, body: &'a Body) {
+    fn add_expressions_of_body(&mut self, body: &'a Body) {
         self.add_all_with_dimension(&body.mass, &MASS, "kg");
         self.add_all_with_dimension(body.com.iter().chain(&body.about), &LENGTH, "m");
         body.inertia.iter().for_each(|e| self.add_inertia_expressions(e));
@@ -208,7 +213,7 @@ impl<'a> DimensionedExpressions<'a> {
         match &e.kind {
             ExprKind::Method(..) => self.points.push(e),
             // The name of an element has no dimension.
-            _ => self.add(e, &LENGTH, "m"),
+            _ => self.add_with_dimension(e, &LENGTH, "m"),
         }
     }
 
@@ -217,7 +222,7 @@ impl<'a> DimensionedExpressions<'a> {
         self.add_expressions_of_rotations(&end.rotated);
     }
 
-    fn add_joint(&mut self, joint: &'a Joint) {
+    fn add_expressions_of_joint(&mut self, joint: &'a Joint) {
         self.add_endpoint_expressions(&joint.parent);
         self.add_endpoint_expressions(&joint.child);
         self.add_all_with_dimension(joint.about.iter().chain(&joint.along), &PLAIN, "1");
@@ -225,7 +230,7 @@ impl<'a> DimensionedExpressions<'a> {
         self.add_all_with_dimension(&joint.lead, &LENGTH, "m");
     }
 
-    fn add_action(&mut self, action: &'a Action, inference: &mut Inference<'a>) {
+    fn add_expressions_of_action(&mut self, action: &'a Action, inference: &mut Inference<'a>) {
         let on = match &action.on {
             Target::Between(a, b) => {
                 self.points.extend([a, b]);
@@ -237,7 +242,7 @@ impl<'a> DimensionedExpressions<'a> {
                     _ if coordinate.is_some() => coordinate,
                     ExprKind::Call(..) | ExprKind::Binary(..) | ExprKind::Neg(..) => {
                         let unknown = Dimension::unknown_dimension(inference.system.add_unknown_dimension());
-                        self.add(e, &unknown, "");
+                        self.add_with_dimension(e, &unknown, "");
                         Some(unknown)
                     }
                     _ => {
@@ -257,15 +262,16 @@ impl<'a> DimensionedExpressions<'a> {
         self.add_written_arguments(&action.arguments, &work, row.locals);
         if action.is_input() {
             let is_direction = |key: &Key| matches!(key.row().quantity, ArgumentQuantity::Direction);
-            let direction = action.arguments.iter().find(|(key, _)| is_direction(key)).map(|(_, e)| e);
+            let direction =
+                action.arguments.keyed_expressions().find(|(key, _)| is_direction(key)).map(|(_, e)| e);
             set_input_unit(action, direction, &work.force, inference);
         }
     }
 
-    fn add_limit(&mut self, limit: &'a Limit, inference: &mut Inference<'a>) {
+    fn add_expressions_of_limit(&mut self, limit: &'a Limit, inference: &mut Inference<'a>) {
         let q = coordinate_dimension(&limit.on, inference).unwrap_or_else(|| {
             let unknown = Dimension::unknown_dimension(inference.system.add_unknown_dimension());
-            self.add(&limit.on, &unknown, "");
+            self.add_with_dimension(&limit.on, &unknown, "");
             unknown
         });
         if let Some(work) = WorkDimensions::new(q) {
@@ -276,11 +282,11 @@ impl<'a> DimensionedExpressions<'a> {
     /// Adds the value at rest of a coordinate, an input or a state.
     fn add_value_at_rest(&mut self, place: &'a Expr, value: &'a Expr, inference: &mut Inference<'a>) {
         if let Some(known) = coordinate_dimension(place, inference) {
-            self.add(value, &known, if known.is_plain() { "rad" } else { "" });
+            self.add_with_dimension(value, &known, if known.is_plain() { "rad" } else { "" });
         } else if place.as_name().is_some() {
             let unknown = Dimension::unknown_dimension(inference.system.add_unknown_dimension());
-            self.add(place, &unknown, "");
-            self.add(value, &unknown, "");
+            self.add_with_dimension(place, &unknown, "");
+            self.add_with_dimension(value, &unknown, "");
         }
     }
 
@@ -293,20 +299,20 @@ impl<'a> DimensionedExpressions<'a> {
     ) {
         let [force, stiffness, damping, inertance, coordinate, speed] = work.units;
         let q = &work.coordinate;
-        let force_unit_per_coordinate = |times: i64| {
+        let dimension_of_force_coefficient = |times: i64| {
             work.force
                 .dimension_of_quotient(q)?
                 .dimension_of_product(&TIME.dimension_of_power(Ratio::from_integer(times))?)
         };
-        for (key, e) in written.iter() {
+        for (key, e) in written.keyed_expressions() {
             let (dimension, unit) = match &key.row().quantity {
-                ArgumentQuantity::Stiffness => (force_unit_per_coordinate(0), stiffness),
+                ArgumentQuantity::Stiffness => (dimension_of_force_coefficient(0), stiffness),
                 ArgumentQuantity::HertzStiffness => {
                     let power = Ratio::new(3, 2).and_then(|power| q.dimension_of_power(power));
                     (power.and_then(|power| work.force.dimension_of_quotient(&power)), "")
                 }
-                ArgumentQuantity::Damping => (force_unit_per_coordinate(1), damping),
-                ArgumentQuantity::Inertance => (force_unit_per_coordinate(2), inertance),
+                ArgumentQuantity::Damping => (dimension_of_force_coefficient(1), damping),
+                ArgumentQuantity::Inertance => (dimension_of_force_coefficient(2), inertance),
                 ArgumentQuantity::Force | ArgumentQuantity::Load => (Some(work.force.clone()), force),
                 ArgumentQuantity::Energy => (Some(ENERGY), "J"),
                 ArgumentQuantity::Coordinate => (Some(q.clone()), coordinate),
@@ -326,7 +332,7 @@ impl<'a> DimensionedExpressions<'a> {
                 }
                 _ => Vec::new(),
             };
-            let e = if key == Key::Restitution { restitution_coefficient(e).0 } else { e };
+            let e = if key == Key::Restitution { restitution_value_and_kind(e).0 } else { e };
             self.tasks.push(DimensionedTask { e, dimension, unit, locals });
         }
     }
@@ -336,7 +342,7 @@ impl<'a> DimensionedExpressions<'a> {
         let side = Dimension::unknown_dimension(inference.system.add_unknown_dimension());
         self.sides.push(side.clone());
         if constraint.kind.surface_pair_function().is_none() {
-            self.add(&constraint.value, &side, "");
+            self.add_with_dimension(&constraint.value, &side, "");
             self.add_all_with_dimension(&constraint.other, &side, "");
             return;
         }
@@ -349,11 +355,12 @@ impl<'a> DimensionedExpressions<'a> {
 
     /// Adds the arguments of a surface of a body, or of a point, with their dimensions.
     fn add_expressions_of_surface(&mut self, surface: &'a Expr) {
-        if let Some(link) = collision_link(surface) {
+        if let Some(link) = link_in_collision_expression(surface) {
             self.points.extend(link);
             return;
         }
-        let ExprKind::Method(frame, Member { id: Some(Method::Surface(id)), .. }, arguments) = &surface.kind
+        let ExprKind::Method(frame, Member { id: Some(BodyOrInertiaMethod::Surface(id)), .. }, arguments) =
+            &surface.kind
         else {
             self.points.push(surface);
             return;
@@ -387,7 +394,7 @@ fn set_input_unit<'a>(
         return;
     };
     let (Target::On(on) | Target::Between(on, _)) = &action.on;
-    let (at, product) = match direction.map(|e| (e, inference.value_of_expression(e))) {
+    let (at, product) = match direction.map(|e| (e, inference.inferred_unit_of_expression(e))) {
         Some((at, InferredUnit::Quantity { dimension, .. })) => {
             inference.default_to_plain(dimension.clone());
             (at, input.dimension_of_product(&dimension))

@@ -7,7 +7,7 @@ use super::owner::{location_text_of_expression, solid_with_argument};
 use super::si::describe_dimension;
 use crate::diag::{Diagnostic, Diagnostics};
 use crate::language::Builtin;
-use crate::language::dimension::{Dimension, Variable};
+use crate::language::dimension::{Dimension, UnknownDimensionIndex};
 use crate::syntax::{BinaryOp, Description, Expr, ExprKind};
 
 /// Maximum number of other uses of a parameter shown for an error.
@@ -16,7 +16,7 @@ const MAX_PLACES: usize = 2;
 /// Reports the contradictions. Each parameter, and each solid with its arguments, is reported once, because
 /// further contradictions most likely have the same cause.
 pub fn report_unit_contradictions(d: &Description, inference: &mut Inference<'_>, cx: &mut Diagnostics) {
-    let mut shown: Vec<Variable> = Vec::new();
+    let mut shown: Vec<UnknownDimensionIndex> = Vec::new();
     let mut solids: Vec<&Expr> = Vec::new();
     for mismatch in std::mem::take(&mut inference.mismatches) {
         let mut names = Vec::new();
@@ -33,7 +33,7 @@ pub fn report_unit_contradictions(d: &Description, inference: &mut Inference<'_>
             solids.push(call);
         }
         let error = match names.as_slice() {
-            [(v, e)] => parameter_dimension_conflict(d, &mismatch, *v, e, inference),
+            [(v, e)] => parameter_dimension_error(d, &mismatch, *v, e, inference),
             _ => None,
         };
         let error = error.or_else(|| mismatch_error(d, &mismatch, &names, inference));
@@ -46,7 +46,7 @@ pub fn report_unit_contradictions(d: &Description, inference: &mut Inference<'_>
             if !names.is_empty() && contains_product_with_number(mismatch.origin.expression) {
                 error.add_help(NUMBER_WITH_UNIT);
             }
-            cx.add(error);
+            cx.add_diagnostic(error);
         }
     }
 }
@@ -79,7 +79,7 @@ fn has_no_names_but_pi(e: &Expr) -> bool {
 }
 
 /// Returns the help if it is unclear which quantity is wrong; mentions the definitions among them.
-fn help_for_unclear_units(d: &Description, names: &[(Variable, &Expr)]) -> String {
+fn help_for_unclear_units(d: &Description, names: &[(UnknownDimensionIndex, &Expr)]) -> String {
     let is_definition_name =
         |name: &&str| d.definitions.iter().any(|definition| definition.name.text == **name);
     let defined: Vec<String> = names
@@ -103,7 +103,7 @@ fn help_for_unclear_units(d: &Description, names: &[(Variable, &Expr)]) -> Strin
 fn collect_names_of_equation<'a>(
     origin: &EquationOrigin<'a>,
     inference: &Inference<'_>,
-    found: &mut Vec<(Variable, &'a Expr)>,
+    found: &mut Vec<(UnknownDimensionIndex, &'a Expr)>,
 ) {
     origin.compared_with.iter().for_each(|e| collect_parameters_and_definitions(e, inference, found));
     if let (ExprKind::Binary(_, left, right, _), DimensionEqualityReason::Sum(_)) =
@@ -123,9 +123,9 @@ fn collect_names_of_equation<'a>(
 fn collect_parameters_and_definitions<'a>(
     e: &'a Expr,
     inference: &Inference<'_>,
-    found: &mut Vec<(Variable, &'a Expr)>,
+    found: &mut Vec<(UnknownDimensionIndex, &'a Expr)>,
 ) {
-    let mut inner = |e: &'a Expr| collect_parameters_and_definitions(e, inference, found);
+    let mut collect_in_subexpression = |e: &'a Expr| collect_parameters_and_definitions(e, inference, found);
     match &e.kind {
         ExprKind::Number(_) | ExprKind::Text(_) => {}
         ExprKind::Name(name) => {
@@ -135,38 +135,40 @@ fn collect_parameters_and_definitions<'a>(
                 found.push((*v, e));
             }
         }
-        ExprKind::Field(base, _) | ExprKind::Neg(base) => inner(base),
+        ExprKind::Field(base, _) | ExprKind::Neg(base) => collect_in_subexpression(base),
         ExprKind::Method(base, _, arguments) => {
-            inner(base);
-            arguments.iter().for_each(inner);
+            collect_in_subexpression(base);
+            arguments.iter().for_each(collect_in_subexpression);
         }
         ExprKind::Call(_, arguments) | ExprKind::Tuple(arguments) | ExprKind::Array(arguments) => {
-            arguments.iter().for_each(inner);
+            arguments.iter().for_each(collect_in_subexpression);
         }
         ExprKind::Binary(_, a, b, _) => {
-            inner(a);
-            inner(b);
+            collect_in_subexpression(a);
+            collect_in_subexpression(b);
         }
     }
 }
 
 /// Returns the error for a parameter that would need two dimensions.
-fn parameter_dimension_conflict(
+fn parameter_dimension_error(
     d: &Description,
     mismatch: &DimensionMismatch<'_>,
-    v: Variable,
+    v: UnknownDimensionIndex,
     here: &Expr,
     inference: &mut Inference<'_>,
 ) -> Option<Diagnostic> {
     let name = text_of_name(here);
-    let is = inference.system.resolve(&Dimension::unknown_dimension(v))?;
-    let (found, expected) =
-        (inference.system.resolve(&mismatch.found)?, inference.system.resolve(&mismatch.expected)?);
+    let is = inference.system.substitute_solved_unknowns(&Dimension::unknown_dimension(v))?;
+    let (found, expected) = (
+        inference.system.substitute_solved_unknowns(&mismatch.found)?,
+        inference.system.substitute_solved_unknowns(&mismatch.expected)?,
+    );
     // The expected dimension requires that of the parameter to change by this power of the quotient.
     let power = mismatch
         .found
-        .exponent_of_variable(v)
-        .checked_sum(mismatch.expected.exponent_of_variable(v).negative_ratio())?;
+        .exponent_of_unknown(v)
+        .checked_sum(mismatch.expected.exponent_of_unknown(v).negative_ratio())?;
     let needed = is.times_power(&expected.dimension_of_quotient(&found)?, power.inverse()?)?;
     let first = inference.origins.get(&v).copied()?;
     if !is.is_known() || !needed.is_known() {
@@ -190,11 +192,13 @@ fn parameter_dimension_conflict(
 fn mismatch_error(
     d: &Description,
     mismatch: &DimensionMismatch<'_>,
-    names: &[(Variable, &Expr)],
+    names: &[(UnknownDimensionIndex, &Expr)],
     inference: &mut Inference<'_>,
 ) -> Option<Diagnostic> {
-    let (found, expected) =
-        (inference.system.resolve(&mismatch.found), inference.system.resolve(&mismatch.expected));
+    let (found, expected) = (
+        inference.system.substitute_solved_unknowns(&mismatch.found),
+        inference.system.substitute_solved_unknowns(&mismatch.expected),
+    );
     let (found, expected) = (found?, expected?);
     let place = match (&mismatch.origin.expression.kind, mismatch.origin.reason) {
         (ExprKind::Binary(.., operator), DimensionEqualityReason::Sum(_)) => operator,
@@ -208,7 +212,10 @@ fn mismatch_error(
         );
     }
     for (v, e) in names.iter().take(MAX_PLACES) {
-        let is = inference.system.resolve(&Dimension::unknown_dimension(*v)).filter(Dimension::is_known);
+        let is = inference
+            .system
+            .substitute_solved_unknowns(&Dimension::unknown_dimension(*v))
+            .filter(Dimension::is_known);
         if let (Some(is), Some(origin)) = (is, inference.origins.get(v).copied()) {
             add_unit_origin_note(d, e, *v, &describe_dimension(&is), origin, inference, &mut diagnostic);
         }
@@ -220,7 +227,7 @@ fn mismatch_error(
 fn add_unit_origin_note(
     d: &Description,
     here: &Expr,
-    v: Variable,
+    v: UnknownDimensionIndex,
     is: &str,
     origin: EquationOrigin<'_>,
     inference: &Inference<'_>,

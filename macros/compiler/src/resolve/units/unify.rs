@@ -1,14 +1,14 @@
 //! Dimensions with unknowns, and linear equations between them: unification over exponent vectors of length,
 //! mass and time.
 
-use crate::language::dimension::{Dimension, Variable};
+use crate::language::dimension::{Dimension, UnknownDimensionIndex};
 use crate::language::ratio::Ratio;
 
 /// Result of the addition of an equation to the system.
 #[derive(Debug, PartialEq, Eq)]
 pub enum EquationOutcome {
     /// The equation is consistent; the unknowns that it determined.
-    Holds(Vec<Variable>),
+    Holds(Vec<UnknownDimensionIndex>),
     /// The equation contradicts earlier equations.
     Contradicts,
     /// The limit of work or of exponents was exceeded; the result is undecided.
@@ -26,20 +26,20 @@ pub struct DimensionSystem {
     solution: Vec<Option<Dimension>>,
     /// For each unsolved unknown, the solved unknowns whose solutions contain it; the list may include
     /// solutions that no longer contain it.
-    uses: Vec<Vec<Variable>>,
+    uses: Vec<Vec<UnknownDimensionIndex>>,
     work: usize,
 }
 
 impl DimensionSystem {
     /// Adds an unknown dimension to the system.
-    pub fn add_unknown_dimension(&mut self) -> Variable {
+    pub fn add_unknown_dimension(&mut self) -> UnknownDimensionIndex {
         self.solution.push(None);
         self.uses.push(Vec::new());
         self.solution.len() - 1
     }
 
     /// Returns a dimension in terms of unsolved unknowns; `None` if the limit of work is exceeded.
-    pub fn resolve(&mut self, dimension: &Dimension) -> Option<Dimension> {
+    pub fn substitute_solved_unknowns(&mut self, dimension: &Dimension) -> Option<Dimension> {
         let mut sum = Dimension { unknown: Vec::new(), ..dimension.clone() };
         for (v, e) in &dimension.unknown {
             self.work += 1 + sum.unknown.len();
@@ -56,7 +56,8 @@ impl DimensionSystem {
 
     /// Adds the equation that two dimensions are equal.
     pub fn equate_dimensions(&mut self, a: &Dimension, b: &Dimension) -> EquationOutcome {
-        let quotient = a.dimension_of_quotient(b).and_then(|quotient| self.resolve(&quotient));
+        let quotient =
+            a.dimension_of_quotient(b).and_then(|quotient| self.substitute_solved_unknowns(&quotient));
         let Some(quotient) = quotient else { return EquationOutcome::LimitExceeded };
         match quotient.unknown.last() {
             None if quotient.is_plain() => EquationOutcome::Holds(Vec::new()),
@@ -70,16 +71,16 @@ impl DimensionSystem {
     /// Solves `quotient = 1` for one of its unknowns, and substitutes the solution.
     fn solve_for_variable(
         &mut self,
-        pivot: Variable,
+        pivot: UnknownDimensionIndex,
         exponent: Ratio,
         quotient: &Dimension,
-    ) -> Option<Vec<Variable>> {
+    ) -> Option<Vec<UnknownDimensionIndex>> {
         let rest = quotient.times_power(&Dimension::unknown_dimension(pivot), exponent.negative_ratio())?;
         let value = rest.dimension_of_power(exponent.negative_ratio().inverse()?)?;
         let mut known = Vec::new();
         for v in std::mem::take(self.uses.get_mut(pivot)?) {
             let Some(old) = self.solution.get(v)?.clone() else { continue };
-            let e = old.exponent_of_variable(pivot);
+            let e = old.exponent_of_unknown(pivot);
             if e.is_zero() {
                 continue;
             }
@@ -96,7 +97,12 @@ impl DimensionSystem {
         Some(known)
     }
 
-    fn set_solved_dimension(&mut self, v: Variable, value: Dimension, known: &mut Vec<Variable>) {
+    fn set_solved_dimension(
+        &mut self,
+        v: UnknownDimensionIndex,
+        value: Dimension,
+        known: &mut Vec<UnknownDimensionIndex>,
+    ) {
         if value.is_known() {
             known.push(v);
         }
@@ -134,7 +140,7 @@ mod tests {
         let EquationOutcome::Holds(mut known) = s.equate_dimensions(&c, &area) else { panic!("it is known") };
         known.sort_unstable();
         assert_eq!(known, [0, 1, 2]);
-        assert_eq!(s.resolve(&a), Some(LENGTH));
+        assert_eq!(s.substitute_solved_unknowns(&a), Some(LENGTH));
         assert_eq!(s.equate_dimensions(&a, &c), EquationOutcome::Contradicts);
         assert_eq!(s.equate_dimensions(&a, &LENGTH), EquationOutcome::Holds(Vec::new()));
     }
@@ -144,13 +150,13 @@ mod tests {
         let mut s = DimensionSystem::default();
         let a = Dimension::unknown_dimension(s.add_unknown_dimension());
         s.equate_dimensions(&a.dimension_of_power(Ratio::from_integer(2)).unwrap(), &LENGTH);
-        assert_eq!(s.resolve(&a).unwrap().base[0].numerator_and_denominator(), (1, 2));
+        assert_eq!(s.substitute_solved_unknowns(&a).unwrap().base[0].numerator_and_denominator(), (1, 2));
     }
 
     #[test]
     fn unit_unification_work_is_bounded() {
         let mut s = DimensionSystem::default();
-        let all: Vec<Variable> = (0..3000).map(|_| s.add_unknown_dimension()).collect();
+        let all: Vec<UnknownDimensionIndex> = (0..3000).map(|_| s.add_unknown_dimension()).collect();
         let product =
             Dimension { unknown: all.iter().map(|v| (*v, Ratio::ONE)).collect(), ..Dimension::new(0, 0, 0) };
         let limit_exceeded = (0..3000).any(|k| {

@@ -6,7 +6,7 @@ use crate::language::ratio::Ratio;
 /// Source of a quantity's unit, in rising order: a product or a sum has the highest source of its factors or
 /// terms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Anchor {
+pub enum UnitSource {
     /// Coordinates, velocities and time. A number that multiplies them is a coefficient with any unit; by
     /// themselves they may be numbers of another unit.
     Motion,
@@ -29,7 +29,7 @@ pub enum InferredUnit {
         /// Dimension of the expression's value.
         dimension: Dimension,
         /// Source from which the unit is known.
-        anchor: Anchor,
+        anchor: UnitSource,
     },
     /// Value of unknown dimension, or after an error.
     Unknown,
@@ -38,11 +38,11 @@ pub enum InferredUnit {
 impl InferredUnit {
     /// Returns a quantity whose unit follows from the motion.
     pub fn motion_quantity_of_dimension(dimension: Dimension) -> InferredUnit {
-        InferredUnit::Quantity { dimension, anchor: Anchor::Motion }
+        InferredUnit::Quantity { dimension, anchor: UnitSource::Motion }
     }
 
     /// Returns the value of the negated expression.
-    pub fn negated_value(self) -> InferredUnit {
+    pub fn unit_of_negation(self) -> InferredUnit {
         match self {
             InferredUnit::Number(value) => InferredUnit::Number(-value),
             other => other,
@@ -50,7 +50,7 @@ impl InferredUnit {
     }
 
     /// Returns a power of the value; unknown if the exponent is unknown.
-    pub fn power_of_value(self, exponent: Option<Ratio>) -> InferredUnit {
+    pub fn unit_of_power(self, exponent: Option<Ratio>) -> InferredUnit {
         match self {
             InferredUnit::Quantity { dimension, .. } if dimension.is_plain() => {
                 InferredUnit::motion_quantity_of_dimension(dimension)
@@ -66,15 +66,15 @@ impl InferredUnit {
     }
 
     /// Returns the source of the unit; `Motion` for a value that is not a quantity.
-    pub fn source_of_unit(&self) -> Anchor {
+    pub fn source_of_unit(&self) -> UnitSource {
         match self {
             InferredUnit::Quantity { anchor, .. } => *anchor,
-            _ => Anchor::Motion,
+            _ => UnitSource::Motion,
         }
     }
 
     /// Returns the more specific of two values with equal dimensions.
-    pub fn more_specific_value(self, other: InferredUnit) -> InferredUnit {
+    pub fn more_specific_unit(self, other: InferredUnit) -> InferredUnit {
         match (&self, &other) {
             (InferredUnit::Quantity { .. }, _) => self,
             (_, InferredUnit::Quantity { .. }) => other,
@@ -87,7 +87,7 @@ impl InferredUnit {
 
 /// Returns the product of factors, and whether a number among them may have a unit. Marked factors are
 /// divisors.
-pub fn product_of_values(factors: &[(bool, InferredUnit)]) -> (InferredUnit, bool) {
+pub fn unit_of_product(factors: &[(bool, InferredUnit)]) -> (InferredUnit, bool) {
     let has_factor_of_kind = |what: fn(&InferredUnit) -> bool| factors.iter().any(|(_, f)| what(f));
     // Zero has any unit.
     if factors.iter().any(|(below, f)| !below && matches!(f, InferredUnit::Number(0.0))) {
@@ -119,7 +119,7 @@ pub fn product_of_values(factors: &[(bool, InferredUnit)]) -> (InferredUnit, boo
     });
     match product {
         Some(dimension) => {
-            (InferredUnit::Quantity { dimension, anchor }, is_number && anchor != Anchor::Parameter)
+            (InferredUnit::Quantity { dimension, anchor }, is_number && anchor != UnitSource::Parameter)
         }
         None => (InferredUnit::Unknown, false),
     }

@@ -2,30 +2,30 @@
 //! dimensions.
 
 use super::infer::{DimensionEqualityReason, EquationOrigin, Inference, UnitMeaningOfName};
-use super::value::{Anchor, InferredUnit, product_of_values};
+use super::value::{InferredUnit, UnitSource, unit_of_product};
 use crate::expr::Function;
-use crate::language::dimension::{Dimension, INERTIA, LENGTH, PLAIN, RATE, TIME, Variable};
+use crate::language::dimension::{Dimension, INERTIA, LENGTH, PLAIN, RATE, TIME, UnknownDimensionIndex};
 use crate::language::ratio::Ratio;
 use crate::language::{Builtin, Callable, UnitRule};
 use crate::syntax::{BinaryOp, Callee, Expr, ExprKind, Name};
 
 impl<'a> Inference<'a> {
     /// Returns the value of an expression for the inference of units.
-    pub fn value_of_expression(&mut self, e: &'a Expr) -> InferredUnit {
+    pub fn inferred_unit_of_expression(&mut self, e: &'a Expr) -> InferredUnit {
         match &e.kind {
             ExprKind::Number(n) => InferredUnit::Number(*n),
-            ExprKind::Name(name) => self.value_of_name(name),
-            ExprKind::Field(inner, member) => self.value_of_member(inner, member),
-            ExprKind::Neg(inner) => self.value_of_expression(inner).negated_value(),
-            ExprKind::Binary(BinaryOp::Mul | BinaryOp::Div, ..) => self.value_of_product(e),
-            ExprKind::Binary(..) => self.value_of_sum(e, None),
-            ExprKind::Call(function, arguments) => self.value_of_call(function, arguments),
+            ExprKind::Name(name) => self.inferred_unit_of_name(name),
+            ExprKind::Field(inner, member) => self.inferred_unit_of_member(inner, member),
+            ExprKind::Neg(inner) => self.inferred_unit_of_expression(inner).unit_of_negation(),
+            ExprKind::Binary(BinaryOp::Mul | BinaryOp::Div, ..) => self.inferred_unit_of_product(e),
+            ExprKind::Binary(..) => self.inferred_unit_of_sum(e, None),
+            ExprKind::Call(function, arguments) => self.inferred_unit_of_call(function, arguments),
             ExprKind::Array(items) => self.equate_to_common_unit(items, DimensionEqualityReason::Components),
             ExprKind::Method(..) | ExprKind::Tuple(_) | ExprKind::Text(_) => InferredUnit::Unknown,
         }
     }
 
-    fn value_of_name(&self, name: &str) -> InferredUnit {
+    fn inferred_unit_of_name(&self, name: &str) -> InferredUnit {
         if let Some((_, dimension)) = self.locals.iter().find(|(local, _)| *local == name) {
             return InferredUnit::motion_quantity_of_dimension(dimension.clone());
         }
@@ -44,7 +44,7 @@ impl<'a> Inference<'a> {
     }
 
     /// Returns the value of a coordinate of a joint, or of an axis of a frame.
-    fn value_of_member(&self, inner: &Expr, member: &Name) -> InferredUnit {
+    fn inferred_unit_of_member(&self, inner: &Expr, member: &Name) -> InferredUnit {
         let ExprKind::Name(joint) = &inner.kind else { return InferredUnit::Unknown };
         match self.names.get(&format!("{joint}.{}", member.text)) {
             Some(UnitMeaningOfName::Moving(dimension, _)) => {
@@ -66,7 +66,7 @@ impl<'a> Inference<'a> {
             InferredUnit::Quantity { dimension: other, anchor: second },
         ) = (&a, &b)
         else {
-            return a.more_specific_value(b);
+            return a.more_specific_unit(b);
         };
         match self.equate_dimensions(other, dimension, origin) {
             true => InferredUnit::Quantity { dimension: dimension.clone(), anchor: *anchor.max(second) },
@@ -83,7 +83,7 @@ impl<'a> Inference<'a> {
         let mut first: Option<&Expr> = None;
         let mut common = InferredUnit::Number(0.0);
         for item in items {
-            let value = self.value_of_expression(item);
+            let value = self.inferred_unit_of_expression(item);
             let is_quantity = matches!(value, InferredUnit::Quantity { .. });
             common = self.equate_values(
                 common,
@@ -100,7 +100,7 @@ impl<'a> Inference<'a> {
 
     /// Returns the value of a sum of any number of terms. If a term has a parameter or an input, terms of
     /// unknown dimension get the expected dimension, so that an error is reported at the other term.
-    pub fn value_of_sum(&mut self, e: &'a Expr, expected: Option<&Dimension>) -> InferredUnit {
+    pub fn inferred_unit_of_sum(&mut self, e: &'a Expr, expected: Option<&Dimension>) -> InferredUnit {
         let mut written = Vec::new();
         let mut current = e;
         while let ExprKind::Binary(op @ (BinaryOp::Add | BinaryOp::Sub), left, right, _) = &current.kind {
@@ -111,13 +111,13 @@ impl<'a> Inference<'a> {
         let terms: Vec<_> = written
             .into_iter()
             .rev()
-            .map(|(sum, term)| (sum, term, self.value_of_expression(term)))
+            .map(|(sum, term)| (sum, term, self.inferred_unit_of_expression(term)))
             .collect();
-        let is_anchored = terms.iter().any(|(.., value)| value.source_of_unit() > Anchor::Motion);
+        let is_anchored = terms.iter().any(|(.., value)| value.source_of_unit() > UnitSource::Motion);
         for (_, term, value) in &terms {
             if let (InferredUnit::Quantity { dimension, .. }, Some(expected), true) =
                 (value, expected, is_anchored)
-                && self.system.resolve(dimension).is_some_and(|d| !d.is_known())
+                && self.system.substitute_solved_unknowns(dimension).is_some_and(|d| !d.is_known())
             {
                 self.equate_dimensions(
                     dimension,
@@ -148,7 +148,7 @@ impl<'a> Inference<'a> {
 
     /// Returns the value of a product or quotient of any number of factors. Nested products in parentheses
     /// are flattened: `a / (2 * b)` is `a / 2 / b`.
-    fn value_of_product(&mut self, e: &'a Expr) -> InferredUnit {
+    fn inferred_unit_of_product(&mut self, e: &'a Expr) -> InferredUnit {
         let mut factors = Vec::new();
         let mut waiting = vec![(false, e)];
         while let Some((below, factor)) = waiting.pop() {
@@ -157,15 +157,16 @@ impl<'a> Inference<'a> {
                     waiting.push((below != (*op == BinaryOp::Div), &**right));
                     waiting.push((below, &**left));
                 }
-                _ => factors.push((below, self.value_of_expression(factor))),
+                _ => factors.push((below, self.inferred_unit_of_expression(factor))),
             }
         }
-        let value = self.value_of_factors(&factors);
+        let value = self.inferred_unit_of_factors(&factors);
         // `sin(angle) * x` is a metre along `x` where a length is expected, as `x` is.
         let has_direction = factors.iter().any(|(_, factor)| matches!(factor, InferredUnit::Direction));
         match &value {
-            InferredUnit::Quantity { dimension, anchor: Anchor::Motion }
-                if has_direction && self.system.resolve(dimension).is_some_and(|d| d.is_plain()) =>
+            InferredUnit::Quantity { dimension, anchor: UnitSource::Motion }
+                if has_direction
+                    && self.system.substitute_solved_unknowns(dimension).is_some_and(|d| d.is_plain()) =>
             {
                 InferredUnit::Direction
             }
@@ -174,8 +175,8 @@ impl<'a> Inference<'a> {
     }
 
     /// Returns the product of factors; the flag marks divisors.
-    fn value_of_factors(&mut self, factors: &[(bool, InferredUnit)]) -> InferredUnit {
-        let (value, free) = product_of_values(factors);
+    fn inferred_unit_of_factors(&mut self, factors: &[(bool, InferredUnit)]) -> InferredUnit {
+        let (value, free) = unit_of_product(factors);
         let is_gravity = factors.iter().any(|(_, factor)| match factor {
             InferredUnit::Number(g) => self.gravity.contains(&g.abs()),
             _ => false,
@@ -192,14 +193,14 @@ impl<'a> Inference<'a> {
     }
 
     /// Returns the value of a call: of a table, otherwise of a function of the language.
-    fn value_of_call(&mut self, callee: &'a Callee, arguments: &'a [Expr]) -> InferredUnit {
+    fn inferred_unit_of_call(&mut self, callee: &'a Callee, arguments: &'a [Expr]) -> InferredUnit {
         if let Some(unknown) = self.tables.get(&callee.text).cloned() {
-            return self.value_of_table(&unknown, arguments);
+            return self.inferred_unit_of_table(&unknown, arguments);
         }
         match (callee.id, arguments) {
-            (Some(Callable::Elementary(f)), [a]) => self.value_of_elementary(f, a),
+            (Some(Callable::Elementary(f)), [a]) => self.inferred_unit_of_elementary_function(f, a),
             (Some(Callable::Function(function)), _) => {
-                self.value_of_language_function(&function.row().unit, &callee.text, arguments)
+                self.inferred_unit_of_language_function(&function.row().unit, &callee.text, arguments)
             }
             (Some(Callable::If), [_, _, _, _]) => {
                 let (compared, pieces) = arguments.split_at(2);
@@ -211,7 +212,7 @@ impl<'a> Inference<'a> {
     }
 
     /// Returns the value of a function of the language.
-    fn value_of_language_function(
+    fn inferred_unit_of_language_function(
         &mut self,
         rule: &UnitRule,
         name: &'a str,
@@ -244,44 +245,44 @@ impl<'a> Inference<'a> {
             }
             UnitRule::LikeFirst => {
                 self.infer_dimensions_of_unused_values(others);
-                self.value_of_expression(first)
+                self.inferred_unit_of_expression(first)
             }
             UnitRule::LikeLast => {
                 let values: Vec<InferredUnit> =
-                    arguments.iter().map(|a| self.value_of_expression(a)).collect();
+                    arguments.iter().map(|a| self.inferred_unit_of_expression(a)).collect();
                 values.into_iter().last().unwrap_or(InferredUnit::Unknown)
             }
             UnitRule::Product { scalar } => {
                 let factors: Vec<_> =
-                    arguments.iter().map(|a| (false, self.value_of_expression(a))).collect();
-                match self.value_of_factors(&factors) {
+                    arguments.iter().map(|a| (false, self.inferred_unit_of_expression(a))).collect();
+                match self.inferred_unit_of_factors(&factors) {
                     InferredUnit::Direction if *scalar => InferredUnit::motion_quantity_of_dimension(PLAIN),
                     product => product,
                 }
             }
-            UnitRule::Magnitude => match self.value_of_expression(first) {
+            UnitRule::Magnitude => match self.inferred_unit_of_expression(first) {
                 InferredUnit::Direction => InferredUnit::motion_quantity_of_dimension(PLAIN),
                 other => other,
             },
             UnitRule::Power => match others {
-                [exponent] => self.value_of_power(first, exponent),
+                [exponent] => self.inferred_unit_of_power(first, exponent),
                 _ => InferredUnit::Unknown,
             },
             UnitRule::TimeDerivative => match &first.kind {
                 // The rate of a vector in a frame; the frame's name has no dimension.
                 ExprKind::Binary(BinaryOp::Div, vector, frame, _) if self.is_frame(frame) => {
-                    match self.value_of_expression(vector) {
+                    match self.inferred_unit_of_expression(vector) {
                         InferredUnit::Direction => InferredUnit::motion_quantity_of_dimension(RATE),
                         other => quotient_by_dimension(other, &TIME),
                     }
                 }
-                _ => quotient_by_dimension(self.value_of_expression(first), &TIME),
+                _ => quotient_by_dimension(self.inferred_unit_of_expression(first), &TIME),
             },
             UnitRule::Inverse => {
-                self.value_of_expression(first).power_of_value(Some(Ratio::from_integer(-1)))
+                self.inferred_unit_of_expression(first).unit_of_power(Some(Ratio::from_integer(-1)))
             }
             UnitRule::Gradient => match &first.kind {
-                ExprKind::Binary(_, field, ..) => match self.value_of_expression(field) {
+                ExprKind::Binary(_, field, ..) => match self.inferred_unit_of_expression(field) {
                     value @ InferredUnit::Quantity { .. } => quotient_by_dimension(value, &LENGTH),
                     _ => InferredUnit::Unknown,
                 },
@@ -295,7 +296,7 @@ impl<'a> Inference<'a> {
             UnitRule::Moment => {
                 self.infer_from_slash_operands(first);
                 let directions: Vec<InferredUnit> =
-                    others.iter().map(|a| self.value_of_expression(a)).collect();
+                    others.iter().map(|a| self.inferred_unit_of_expression(a)).collect();
                 match directions.iter().all(|direction| matches!(direction, InferredUnit::Direction)) {
                     true => InferredUnit::motion_quantity_of_dimension(INERTIA),
                     // Vectors with a unit would contribute it.
@@ -318,7 +319,7 @@ impl<'a> Inference<'a> {
                 });
                 InferredUnit::Quantity {
                     dimension: LENGTH,
-                    anchor: radius.map_or(Anchor::Motion, |r| r.source_of_unit()),
+                    anchor: radius.map_or(UnitSource::Motion, |r| r.source_of_unit()),
                 }
             }
             UnitRule::OfHeight(dimension) => {
@@ -330,7 +331,7 @@ impl<'a> Inference<'a> {
 
     /// Infers dimensions from expressions whose values are not used.
     fn infer_dimensions_of_unused_values(&mut self, e: &'a [Expr]) {
-        e.iter().for_each(|e| drop(self.value_of_expression(e)));
+        e.iter().for_each(|e| drop(self.inferred_unit_of_expression(e)));
     }
 
     /// Whether an expression is the name of a body or a frame, which has no dimension.
@@ -344,7 +345,11 @@ impl<'a> Inference<'a> {
     }
 
     /// Returns the value of a table. Its variables have the same units in all calls.
-    fn value_of_table(&mut self, unknown: &[Variable], arguments: &'a [Expr]) -> InferredUnit {
+    fn inferred_unit_of_table(
+        &mut self,
+        unknown: &[UnknownDimensionIndex],
+        arguments: &'a [Expr],
+    ) -> InferredUnit {
         let Some((value, variables)) = unknown.split_last() else { return InferredUnit::Unknown };
         for (argument, variable) in arguments.iter().zip(variables) {
             self.equate_with_expected_dimension(
@@ -354,22 +359,25 @@ impl<'a> Inference<'a> {
                 DimensionEqualityReason::Argument,
             );
         }
-        InferredUnit::Quantity { dimension: Dimension::unknown_dimension(*value), anchor: Anchor::Parameter }
+        InferredUnit::Quantity {
+            dimension: Dimension::unknown_dimension(*value),
+            anchor: UnitSource::Parameter,
+        }
     }
 
     /// Returns the value of an elementary function: magnitudes and roots of any quantity, all others of plain
     /// numbers.
-    fn value_of_elementary(&mut self, f: Function, a: &'a Expr) -> InferredUnit {
+    fn inferred_unit_of_elementary_function(&mut self, f: Function, a: &'a Expr) -> InferredUnit {
         match f {
-            Function::Abs => return self.value_of_expression(a),
+            Function::Abs => return self.inferred_unit_of_expression(a),
             Function::Signum => {
-                self.value_of_expression(a);
+                self.inferred_unit_of_expression(a);
                 return InferredUnit::motion_quantity_of_dimension(PLAIN);
             }
             Function::Sqrt => {
-                return match self.value_of_expression(a) {
+                return match self.inferred_unit_of_expression(a) {
                     InferredUnit::Number(value) => InferredUnit::Number(value.sqrt()),
-                    other => other.power_of_value(Ratio::new(1, 2)),
+                    other => other.unit_of_power(Ratio::new(1, 2)),
                 };
             }
             _ => {}
@@ -384,15 +392,15 @@ impl<'a> Inference<'a> {
 
     /// Returns the value of a power. If the exponent is not a number, the dimension is unknown unless the
     /// base is plain.
-    fn value_of_power(&mut self, a: &'a Expr, n: &'a Expr) -> InferredUnit {
-        let base = self.value_of_expression(a);
+    fn inferred_unit_of_power(&mut self, a: &'a Expr, n: &'a Expr) -> InferredUnit {
+        let base = self.inferred_unit_of_expression(a);
         let exponent = self.equate_with_expected_dimension(n, &PLAIN, "1", DimensionEqualityReason::Argument);
         match (base, exponent) {
             (InferredUnit::Number(value), InferredUnit::Number(n)) => {
                 InferredUnit::Number(libm::pow(value, n))
             }
             (InferredUnit::Number(_), _) => InferredUnit::motion_quantity_of_dimension(PLAIN),
-            (base, InferredUnit::Number(n)) => base.power_of_value(Ratio::from_value(n)),
+            (base, InferredUnit::Number(n)) => base.unit_of_power(Ratio::from_value(n)),
             (InferredUnit::Quantity { dimension, anchor }, _) => {
                 let power = Dimension::unknown_dimension(self.system.add_unknown_dimension());
                 self.plain_defaults.push((dimension, Some(power.clone())));

@@ -19,10 +19,10 @@ pub fn report_unnamed_argument(e: &Expr, known: &[&str], example: &str, cx: &mut
     let error = cx.report_error(e.place.clone(), "expected `name = value`");
     match (&e.kind, known) {
         (ExprKind::Call(word, value), _) if known.contains(&word.text.as_str()) && value.len() == 1 => {
-            error.add_help(format!("write `{} = {}`", word.text, value[0].to_source()))
+            error.add_help(format!("write `{} = {}`", word.text, value[0].short_source_text()))
         }
         (_, []) => error.add_help(format!("write `{example}`")),
-        (_, [one]) => error.add_help(format!("write `{one} = {}`", e.to_source())),
+        (_, [one]) => error.add_help(format!("write `{one} = {}`", e.short_source_text())),
         (_, [.., _]) if known.len() <= 8 => {
             let list: Vec<String> = known.iter().map(|word| format!("`{word}`")).collect();
             error.add_help(format!("expected {}", join_with_or(&list)))
@@ -74,7 +74,7 @@ pub fn missing_arrow_error(
     if !is_place_expression(first)
         || ends
         || input.peek(Token![::])
-        || (is_arrow && !is_double_headed_arrow(input))
+        || (is_arrow && !is_arrow_followed_by_greater(input))
     {
         return None;
     }
@@ -96,22 +96,22 @@ pub fn missing_arrow_error(
         if equation || (signs.is_empty() && second.is_none()) {
             return None;
         }
-        let child = second.map_or("child".to_string(), |e| e.to_source());
+        let child = second.map_or("child".to_string(), |e| e.short_source_text());
         return Some(syn_error_with_help(
             span,
             "expected `->`",
-            &format!("write `{} -> {child}`", first.to_source()),
+            &format!("write `{} -> {child}`", first.short_source_text()),
         ));
     }
     if matches!(signs.as_str(), ":" | ":=" | "+=" | "-=" | "*=" | "/=" | "=>" | "<-" | "~") {
-        let help = format!("write `{} = …`", first.to_source());
+        let help = format!("write `{} = …`", first.short_source_text());
         return first.as_name().map(|_| syn_error_with_help(span, "expected `=`", &help));
     }
     None
 }
 
 /// Returns whether the next tokens are the misspelt arrow `->>`.
-fn is_double_headed_arrow(input: ParseStream<'_>) -> bool {
+fn is_arrow_followed_by_greater(input: ParseStream<'_>) -> bool {
     let ahead = input.fork();
     ahead.parse::<Token![->]>().is_ok() && ahead.peek(Token![>])
 }

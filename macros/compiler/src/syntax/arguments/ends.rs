@@ -24,7 +24,7 @@ const END_KEYS: [(&str, &str); 14] = [
 
 impl Arguments {
     /// Returns the relation `parent -> child`, or reports an error.
-    pub fn take_relation(&mut self, known: &[&str], cx: &mut Diagnostics) -> Option<(Expr, Expr)> {
+    pub fn require_joint_relation(&mut self, known: &[&str], cx: &mut Diagnostics) -> Option<(Expr, Expr)> {
         if self.relation.is_none() {
             let (place, ends) = self.guess_joint_ends(known);
             self.plain.clear();
@@ -41,7 +41,7 @@ impl Arguments {
     /// Returns the likely ends of a joint without an arrow, and the span of the error. Ends with keys are
     /// removed.
     fn guess_joint_ends(&mut self, known: &[&str]) -> (Place, Option<[String; 2]>) {
-        let source_texts_of_ends = |a: &Expr, b: &Expr| Some([a.to_source(), b.to_source()]);
+        let source_texts_of_ends = |a: &Expr, b: &Expr| Some([a.short_source_text(), b.short_source_text()]);
         if let Some((place, a, b)) = self.take_ends_with_own_keys() {
             return (place, source_texts_of_ends(&a, &b));
         }
@@ -50,7 +50,7 @@ impl Arguments {
             [Expr { kind: ExprKind::Binary(BinaryOp::Sub, a, b, _), .. }] => {
                 return (place, source_texts_of_ends(a, b));
             }
-            [a] => return (place, Some(["parent".to_string(), a.to_source()])),
+            [a] => return (place, Some(["parent".to_string(), a.short_source_text()])),
             [a, b, ..] => return (place, source_texts_of_ends(a, b)),
             [] => {}
         }
@@ -64,11 +64,15 @@ impl Arguments {
             (ExprKind::Tuple(two) | ExprKind::Array(two), _) if two.len() == 2 => {
                 source_texts_of_ends(&two[0], &two[1])
             }
-            (ExprKind::Name(_), "parent" | "from" | "base") => Some([value.to_source(), "child".to_string()]),
-            (ExprKind::Name(_), "on" | "body" | "child" | "to" | "link") => {
-                Some(["parent".to_string(), value.to_source()])
+            (ExprKind::Name(_), "parent" | "from" | "base") => {
+                Some([value.short_source_text(), "child".to_string()])
             }
-            (ExprKind::Name(_) | ExprKind::Method(..), other) => Some([other.to_string(), value.to_source()]),
+            (ExprKind::Name(_), "on" | "body" | "child" | "to" | "link") => {
+                Some(["parent".to_string(), value.short_source_text()])
+            }
+            (ExprKind::Name(_) | ExprKind::Method(..), other) => {
+                Some([other.to_string(), value.short_source_text()])
+            }
             _ => None,
         };
         (name.place, ends)
@@ -82,10 +86,10 @@ impl Arguments {
         let (a, b) =
             END_KEYS.into_iter().find(|(a, b)| has_expression_for_key(a) && has_expression_for_key(b))?;
         let place = self.named.iter().find(|(name, _)| name.text == a || name.text == b)?.0.place.clone();
-        let mut end = |key: &str| match self.take_named_argument(key) {
+        let mut take_end_with_key = |key: &str| match self.take_named_argument(key) {
             Some((_, ArgumentValue::Expr(e))) => Some(e),
             _ => None,
         };
-        Some((place, end(a)?, end(b)?))
+        Some((place, take_end_with_key(a)?, take_end_with_key(b)?))
     }
 }

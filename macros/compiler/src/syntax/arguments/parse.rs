@@ -54,8 +54,9 @@ fn parse_argument(input: ParseStream<'_>, arguments: &mut Arguments) -> syn::Res
             && input.peek(Token![->])
         {
             let arrow: Token![->] = input.parse()?;
-            let second = parse_expr(input).map_or_else(|_| "…".to_string(), |second| second.to_source());
-            let help = format!("write `between = ({}, {second})`", first.to_source());
+            let second =
+                parse_expr(input).map_or_else(|_| "…".to_string(), |second| second.short_source_text());
+            let help = format!("write `between = ({}, {second})`", first.short_source_text());
             return Err(syn_error_with_help(arrow.spans[0], "expected `,`", &help));
         }
         arguments.named.push((key, value));
@@ -71,7 +72,7 @@ fn parse_argument(input: ParseStream<'_>, arguments: &mut Arguments) -> syn::Res
     if input.peek(Token![->]) {
         let arrow: Token![->] = input.parse()?;
         if input.is_empty() || input.peek(Token![,]) {
-            let help = format!("write `{} -> child`", first.to_source());
+            let help = format!("write `{} -> child`", first.short_source_text());
             return Err(syn_error_with_help(arrow.spans[1], "missing body after this arrow", &help));
         }
         let second = parse_expr(input)?;

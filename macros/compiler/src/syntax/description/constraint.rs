@@ -106,13 +106,13 @@ pub enum FileContactKind {
 impl Contact {
     /// Returns whether the contact has a stiffness, so that its surfaces are compliant.
     pub fn is_compliant(&self) -> bool {
-        [Key::Stiffness, Key::Hertz].into_iter().any(|key| self.arguments.get(key).is_some())
+        [Key::Stiffness, Key::Hertz].into_iter().any(|key| self.arguments.expression_of_key(key).is_some())
     }
 }
 
 /// Returns the value of a coefficient of restitution, and whether it is a ratio of impulses, `poisson(e)`,
 /// instead of velocities.
-pub fn restitution_coefficient(e: &Expr) -> (&Expr, bool) {
+pub fn restitution_value_and_kind(e: &Expr) -> (&Expr, bool) {
     match &e.kind {
         ExprKind::Call(word, list) if word.id == Some(Callable::Poisson) => (list.first().unwrap_or(e), true),
         _ => (e, false),

@@ -1,7 +1,7 @@
 //! Expressions as written, with unresolved names.
 
 use crate::diag::Place;
-use crate::language::{Callable, Method};
+use crate::language::{BodyOrInertiaMethod, Callable};
 
 /// A word chosen by the user: an identifier of the source or a name of an imported file.
 #[derive(Clone, Debug)]
@@ -14,7 +14,7 @@ pub struct Name {
 
 /// A written word of the language, with its row in the tables.
 #[derive(Clone, Debug)]
-pub struct Term<I> {
+pub struct LanguageWord<I> {
     /// Text of the word.
     pub text: String,
     /// Span in the Rust source, or position in the imported file.
@@ -24,24 +24,24 @@ pub struct Term<I> {
 }
 
 /// A word before parentheses: a function, a solid, a rotation, or a table of the user.
-pub type Callee = Term<Callable>;
+pub type Callee = LanguageWord<Callable>;
 
 impl Callee {
     /// Looks up a function name in the tables of the language.
     pub fn new(name: Name) -> Callee {
         let id = Callable::find_by_name(&name.text);
-        Term { text: name.text, place: name.place, id }
+        LanguageWord { text: name.text, place: name.place, id }
     }
 }
 
 /// Word after the dot of a body, such as `at` in `body.at(vector)`.
-pub type Member = Term<Method>;
+pub type Member = LanguageWord<BodyOrInertiaMethod>;
 
 impl Member {
     /// Looks up a method name with this number of arguments in the tables of the language.
     pub fn new(name: Name, count: usize) -> Member {
-        let id = Method::find_by_name_and_argument_count(&name.text, count);
-        Term { text: name.text, place: name.place, id }
+        let id = BodyOrInertiaMethod::find_by_name_and_argument_count(&name.text, count);
+        LanguageWord { text: name.text, place: name.place, id }
     }
 }
 

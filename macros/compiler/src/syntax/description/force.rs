@@ -23,31 +23,31 @@ pub struct WrittenArguments(pub Vec<(Key, Expr)>);
 
 impl WrittenArguments {
     /// Returns the expression of the argument with a key, if it is present.
-    pub fn get(&self, key: Key) -> Option<&Expr> {
-        self.iter().find(|(known, _)| *known == key).map(|(_, e)| e)
+    pub fn expression_of_key(&self, key: Key) -> Option<&Expr> {
+        self.keyed_expressions().find(|(known, _)| *known == key).map(|(_, e)| e)
     }
 
     /// Returns the keys of the arguments with their expressions.
-    pub fn iter(&self) -> impl Iterator<Item = (Key, &Expr)> {
+    pub fn keyed_expressions(&self) -> impl Iterator<Item = (Key, &Expr)> {
         self.0.iter().map(|(key, e)| (*key, e))
     }
 }
 
 /// Spring, damper, rotor or motor that a robot file defines.
 #[derive(Clone, Debug)]
-pub struct Drive {
+pub struct FileForceElement {
     /// Name of the element; for an input, its entry in `INPUTS`.
     pub name: Name,
     /// Coordinates, length or point on which the element of a file acts.
-    pub on: DriveTarget,
+    pub on: FileForceTarget,
     /// Force law of the element.
-    pub law: DriveLaw,
+    pub law: FileForceLaw,
 }
 
 /// Target on which a force element of a robot file acts.
 #[derive(Clone, Debug)]
 #[expect(clippy::large_enum_variant, reason = "there are few of them, and they are not moved")]
-pub enum DriveTarget {
+pub enum FileForceTarget {
     /// Weighted sum of coordinates: joints with one coordinate each, and their weights.
     Sum(Vec<(Name, f64)>),
     /// Length that depends on the coordinates, such as that of a cable.
@@ -69,20 +69,20 @@ pub struct Wrench {
     pub against: Option<Expr>,
 }
 
-impl DriveTarget {
+impl FileForceTarget {
     /// Returns the target with all weights multiplied by a factor.
-    pub fn with_scaled_weights(&self, factor: f64) -> DriveTarget {
+    pub fn with_scaled_weights(&self, factor: f64) -> FileForceTarget {
         match self {
-            DriveTarget::Sum(terms) => DriveTarget::Sum(
+            FileForceTarget::Sum(terms) => FileForceTarget::Sum(
                 terms.iter().map(|(joint, weight)| (joint.clone(), weight * factor)).collect(),
             ),
-            DriveTarget::Length(e) if factor == 1.0 => DriveTarget::Length(e.clone()),
-            DriveTarget::Length(e) => DriveTarget::Length(Expr::binary_operation(
+            FileForceTarget::Length(e) if factor == 1.0 => FileForceTarget::Length(e.clone()),
+            FileForceTarget::Length(e) => FileForceTarget::Length(Expr::binary_operation(
                 BinaryOp::Mul,
                 Expr::number_at(factor, &e.place),
                 e.clone(),
             )),
-            DriveTarget::Wrench(wrench) => DriveTarget::Wrench(Wrench {
+            FileForceTarget::Wrench(wrench) => FileForceTarget::Wrench(Wrench {
                 force: wrench.force.map(|x| x * factor),
                 torque: wrench.torque.map(|x| x * factor),
                 ..wrench.clone()
@@ -93,15 +93,15 @@ impl DriveTarget {
     /// Returns the joints of a sum with their weights; empty for other targets.
     pub fn weighted_joints(&self) -> &[(Name, f64)] {
         match self {
-            DriveTarget::Sum(terms) => terms,
-            DriveTarget::Length(_) | DriveTarget::Wrench(_) => &[],
+            FileForceTarget::Sum(terms) => terms,
+            FileForceTarget::Length(_) | FileForceTarget::Wrench(_) => &[],
         }
     }
 }
 
 /// Quantity of a force element of a file that the element's own law contains.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum DriveQuantity {
+pub enum FileForceQuantity {
     /// Weighted sum of coordinates, or length, on which the element acts.
     Length,
     /// Rate of the weighted sum or length.
@@ -110,14 +110,14 @@ pub enum DriveQuantity {
     Input,
 }
 
-impl DriveQuantity {
+impl FileForceQuantity {
     /// Returns the name of the quantity in expressions. It begins with a control character, which no name in
     /// a file contains.
-    pub fn drive_quantity_name(self, drive: &str) -> String {
+    pub fn file_force_quantity_name(self, drive: &str) -> String {
         let word = match self {
-            DriveQuantity::Length => "length",
-            DriveQuantity::Rate => "rate",
-            DriveQuantity::Input => "input",
+            FileForceQuantity::Length => "length",
+            FileForceQuantity::Rate => "rate",
+            FileForceQuantity::Input => "input",
         };
         format!("\u{1}{word} {drive}")
     }
@@ -125,7 +125,7 @@ impl DriveQuantity {
 
 /// Force law of a force element that a robot file defines.
 #[derive(Clone, Debug)]
-pub enum DriveLaw {
+pub enum FileForceLaw {
     /// Force proportional to the difference from a free length.
     Spring {
         /// Stiffness of the spring.
@@ -161,20 +161,20 @@ pub enum DriveLaw {
     },
 }
 
-impl DriveLaw {
+impl FileForceLaw {
     /// Returns the law of a spring with a polynomial force.
-    pub fn spring(stiffness: [f64; 3], free: f64) -> DriveLaw {
+    pub fn polynomial_spring_law(stiffness: [f64; 3], free: f64) -> FileForceLaw {
         match stiffness {
-            [stiffness, 0.0, 0.0] => DriveLaw::Spring { stiffness, free },
-            stiffness => DriveLaw::Slack { stiffness, range: [free; 2] },
+            [stiffness, 0.0, 0.0] => FileForceLaw::Spring { stiffness, free },
+            stiffness => FileForceLaw::Slack { stiffness, range: [free; 2] },
         }
     }
 
     /// Returns the law of a damper with a polynomial force.
-    pub fn damper(damping: [f64; 3]) -> DriveLaw {
+    pub fn polynomial_damper_law(damping: [f64; 3]) -> FileForceLaw {
         match damping {
-            [damping, 0.0, 0.0] => DriveLaw::Damper(damping),
-            damping => DriveLaw::PolynomialDamper(damping),
+            [damping, 0.0, 0.0] => FileForceLaw::Damper(damping),
+            damping => FileForceLaw::PolynomialDamper(damping),
         }
     }
 }
@@ -190,7 +190,7 @@ pub enum Target {
 
 impl Target {
     /// Returns the source position of the target.
-    pub fn source_position(&self) -> &Place {
+    pub fn source_position_of_target(&self) -> &Place {
         match self {
             Target::On(e) | Target::Between(_, e) => &e.place,
         }
@@ -199,18 +199,18 @@ impl Target {
 
 impl Action {
     /// Returns the expression of the argument with a key, if it is present.
-    pub fn get(&self, key: Key) -> Option<&Expr> {
-        self.arguments.get(key)
+    pub fn expression_of_key(&self, key: Key) -> Option<&Expr> {
+        self.arguments.expression_of_key(key)
     }
 
     /// Returns the argument that gives the force law, with its expression.
     pub fn written_law(&self) -> Option<(Key, &Expr)> {
         let laws = self.kind.row().laws;
-        self.arguments.iter().find(|(key, _)| laws.contains(key))
+        self.arguments.keyed_expressions().find(|(key, _)| laws.contains(key))
     }
 
     /// Whether the element is a force or a torque without a value: an input.
     pub fn is_input(&self) -> bool {
-        self.kind.row().arguments.contains(&Key::Value) && self.get(Key::Value).is_none()
+        self.kind.row().arguments.contains(&Key::Value) && self.expression_of_key(Key::Value).is_none()
     }
 }

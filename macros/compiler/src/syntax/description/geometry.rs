@@ -44,7 +44,7 @@ pub struct MeshVertices {
 
 impl MeshVertices {
     /// Returns the vertices of a file, scaled along the axes.
-    pub fn scaled(name: Name, paths: Vec<PathBuf>, scale: [f64; 3]) -> MeshVertices {
+    pub fn scaled_vertices_of_file(name: Name, paths: Vec<PathBuf>, scale: [f64; 3]) -> MeshVertices {
         let linear = std::array::from_fn(|i| std::array::from_fn(|j| if i == j { scale[i] } else { 0.0 }));
         MeshVertices { name, paths, written: Vec::new(), linear, offset: [0.0; 3] }
     }

@@ -11,11 +11,14 @@ mod geometry;
 mod structure;
 
 pub use constraint::{
-    Constraint, ConstraintKind, Contact, FileContact, FileContactKind, Limit, restitution_coefficient,
+    Constraint, ConstraintKind, Contact, FileContact, FileContactKind, Limit, restitution_value_and_kind,
 };
 pub use definition::{Definition, Equilibrium, Rank, Table};
-pub use expr::{BinaryOp, Callee, Expr, ExprKind, Member, Name, Term};
-pub use force::{Action, Drive, DriveLaw, DriveQuantity, DriveTarget, Target, Wrench, WrittenArguments};
+pub use expr::{BinaryOp, Callee, Expr, ExprKind, LanguageWord, Member, Name};
+pub use force::{
+    Action, FileForceElement, FileForceLaw, FileForceQuantity, FileForceTarget, Target, Wrench,
+    WrittenArguments,
+};
 pub use geometry::{Collision, Mesh, MeshVertices, Shape, Visual};
 pub use structure::{Body, Endpoint, Frame, FreeCoordinate, Joint, MimicRelation, Particle, Point};
 
@@ -69,7 +72,7 @@ pub struct Description {
     /// Declared force elements and inputs of the mechanism.
     pub actions: Vec<Action>,
     /// Force elements and inputs that the robot file defines.
-    pub drives: Vec<Drive>,
+    pub drives: Vec<FileForceElement>,
     /// Declared limits of coordinates.
     pub limits: Vec<Limit>,
     /// Equilibria about which linear equations are printed.

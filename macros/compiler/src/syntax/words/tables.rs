@@ -1,6 +1,6 @@
 //! Tables of words from other tools and textbooks, with their meanings in the language.
 
-use crate::language::Words;
+use crate::language::WordsWithMeanings;
 use crate::language::elements::words::RATIO;
 
 const ONE_SIDED_HELP: &str = "an element that only pulls is a `Spring` given by its energy: `energy = k / 2 \
@@ -22,7 +22,7 @@ const TIME_HELP: &str = "time is `t` in every expression; `#[mechanism]` needs n
 const CONSTRAINT_HELP: &str = "a constraint is `Holonomic`, `Nonholonomic`, `Rolling` or `Slipping`";
 
 /// Synonyms of field types, without the suffix `joint`, with the type that is suggested.
-pub const ELEMENTS: Words = &[
+pub const ELEMENTS: WordsWithMeanings = &[
     ("mass", "a mass is a `Body` if it is extended or rotates, a `Particle` if it is a point"),
     (
         "joint",
@@ -67,7 +67,7 @@ const XACRO_HELP: &str = "expand the template first, `xacro robot.urdf.xacro > r
                           result: `urdf = \"path/to/robot.urdf\"`";
 
 /// Synonyms of options of `#[mechanism]` with a value, with the option that is suggested.
-pub const OPTIONS: Words = &[
+pub const OPTIONS: WordsWithMeanings = &[
     ("g grav gravitation gravityvector", "did you mean `gravity`? it is a vector: `gravity = -9.81 * y`"),
     ("file path model robot filename source", "urdf"),
     ("xml usd dae", FORMAT_HELP),
@@ -90,7 +90,7 @@ pub const OPTIONS: Words = &[
 ];
 
 /// Synonyms of options of `#[mechanism]` without a value, with the option that is suggested.
-pub const REQUESTS: Words = &[
+pub const REQUESTS: WordsWithMeanings = &[
     (
         "derivative jacobian jacobians gradient gradients linearize linearise linearization linear \
          sensitivity autodiff diff",
@@ -117,13 +117,13 @@ pub const REQUESTS: Words = &[
 ];
 
 /// Synonyms of formulations of constrained motion, with the formulation that is suggested.
-pub const FORMULATIONS: Words = &[
+pub const FORMULATIONS: WordsWithMeanings = &[
     ("lagrange lagrangian lagrangemultipliers dae multiplier", "multipliers"),
     ("kane independent minimal reduced speed ode", "speeds"),
 ];
 
 /// Synonyms of functions in expressions, with the function that is suggested.
-pub const FUNCTIONS: Words = &[
+pub const FUNCTIONS: WordsWithMeanings = &[
     ("arctan", "atan"),
     ("arcsin", "asin"),
     ("arccos", "acos"),
@@ -160,7 +160,7 @@ const SI_HELP: &str = "numbers have no units: all quantities are in SI units, an
 const VALUE_HELP: &str = "a value is a number, a parameter, a coordinate or an expression of them";
 
 /// Synonyms of names in expressions, with the expression that is suggested.
-pub const NAMES: Words = &[
+pub const NAMES: WordsWithMeanings = &[
     ("time", "t"),
     ("mpi π", "pi"),
     ("tau twopi", "write `2 * pi`"),
@@ -212,19 +212,19 @@ pub const GREEK: &[(&str, &str)] = &[
 ];
 
 /// Synonyms of solids in `inertia = …`, with the solid that is suggested.
-pub const SOLIDS: Words = &[
+pub const SOLIDS: WordsWithMeanings = &[
     ("point particle pointmass none zero", "a point has no inertia: leave `inertia` out"),
     ("matrix tensor full", "write the matrix itself, `[[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]`"),
 ];
 
 /// Synonyms of methods of a body, with the method that is suggested.
-pub const METHODS: Words = &[
+pub const METHODS: WordsWithMeanings = &[
     ("pos position point offset translate translated from shift origin", "at"),
     ("rotate rot rotation turned turn tilted rpy", "rotated"),
 ];
 
 /// Synonyms of members of a body, with the expression that is suggested; `NAME` is the body's name.
-pub const MEMBERS: Words = &[
+pub const MEMBERS: WordsWithMeanings = &[
     ("position pos r origin p", "its position is `r(NAME / ground)`"),
     ("velocity vel v speed", "its velocity is `v(NAME / ground / ground)`"),
     ("acceleration acc", "its acceleration is `a(NAME / ground / ground)`"),
@@ -236,23 +236,23 @@ pub const MEMBERS: Words = &[
 ];
 
 /// Words that users write for the body that is being declared.
-pub const OWN: Words =
+pub const OWN: WordsWithMeanings =
     &[("body this own local frame me", "the only axes available here are `x`, `y` and `z`")];
 
 /// Synonyms of methods of numbers and coordinates, with the method that is suggested.
-pub const NUMBER_METHODS: Words = &[("powi powf powu", "write `pow(a, n)`")];
+pub const NUMBER_METHODS: WordsWithMeanings = &[("powi powf powu", "write `pow(a, n)`")];
 
 /// Synonyms of methods of coordinates, with the expression that is suggested; `NAME` is the coordinate.
-pub const RATES: Words = &[("dot rate diff velocity speed dt", "write `rate(NAME)`")];
+pub const RATES: WordsWithMeanings = &[("dot rate diff velocity speed dt", "write `rate(NAME)`")];
 
 /// Names of the ground in other tools.
-pub const BODIES: Words = &[(
+pub const BODIES: WordsWithMeanings = &[(
     "world base baselink earth origin inertial fixed n newtonian globe wall floor map odom frame static",
     "ground",
 )];
 
 /// Words of other tools for rotations by three angles, with the form that is suggested.
-pub const ROTATIONS: Words = &[(
+pub const ROTATIONS: WordsWithMeanings = &[(
     "rpy euler rollpitchyaw",
     "roll, pitch and yaw are rotations about body-fixed axes in the opposite order: `z(yaw), y(pitch), \
      x(roll)`",

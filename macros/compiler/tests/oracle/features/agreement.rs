@@ -3,13 +3,13 @@
 //! with its variants for other passes, prepared values or lanes.
 
 use super::source;
-use super::values::{DerivativeVariable, Values, derivative_with_error, difference};
-use linkwork_compiler::catalogue::{self, Id};
-use linkwork_compiler::derive::{Function, Output};
+use super::values::{DerivativeVariable, Values, derivative_with_error, sixth_order_difference};
+use linkwork_compiler::catalogue::{self, GeneratedId};
+use linkwork_compiler::derive::{DerivationOutput, Function};
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::mechanism::{Model, SuppliedQuantity};
-use linkwork_compiler::{compile, read_source};
+use linkwork_compiler::{compile, parse_source_and_import};
 use std::path::Path;
 
 /// Maximum difference between results that differ only in passes, relative to the largest entry.
@@ -22,10 +22,10 @@ const WIDE: f64 = 8e-3;
 const SKIPPED: &str = ", skip_passes = [frames, regroup, parallel, limbs]";
 
 /// Compiles a mechanism and calls `f` with it, unless it has errors.
-fn compile_and_call(arguments: &str, item: &str, f: &mut dyn FnMut(&Model<'_>, &Output)) {
+fn compile_and_call(arguments: &str, item: &str, f: &mut dyn FnMut(&Model<'_>, &DerivationOutput)) {
     let (mut cx, graph) = (Diagnostics::new(), Graph::new());
     let parse_tokens = |text: &str| text.parse().expect("the source is Rust");
-    let source = read_source(parse_tokens(arguments), parse_tokens(item), Path::new(""), &mut cx);
+    let source = parse_source_and_import(parse_tokens(arguments), parse_tokens(item), Path::new(""), &mut cx);
     if let Some((model, output)) = source.as_ref().and_then(|source| compile(source, &graph, &mut cx)) {
         f(&model, &output);
     }
@@ -46,7 +46,7 @@ pub fn check_functions_of_mechanism(arguments: &str, item: &str, functions: &[&s
         let lacks = functions.iter().find(|name| !output.functions.iter().any(|f| f.name == **name));
         assert_eq!(lacks, None, "{name}");
         let values = Values::random_values(model, seed);
-        let mut case = Case { model, output, values, name: name.clone(), compared: 0 };
+        let mut case = CompiledTestMechanism { model, output, values, name: name.clone(), compared: 0 };
         case.check_lane_and_prepared_variants();
         case.check_dynamics();
         case.check_derivatives_of_outputs();
@@ -54,7 +54,7 @@ pub fn check_functions_of_mechanism(arguments: &str, item: &str, functions: &[&s
         case.check_contact_functions();
         case.check_derivatives();
         case.check_parameter_derivatives();
-        case.check_requested_functions();
+        case.check_optional_functions();
         compared = case.compared;
         compile_and_call(&format!("{arguments}{SKIPPED}"), item, &mut |_, plain| {
             case.check_against_unoptimised(plain)
@@ -64,9 +64,9 @@ pub fn check_functions_of_mechanism(arguments: &str, item: &str, functions: &[&s
 }
 
 /// Compiled test mechanism, with the state at which its functions are compared.
-pub(super) struct Case<'a, 'g> {
+pub(super) struct CompiledTestMechanism<'a, 'g> {
     pub(super) model: &'a Model<'g>,
-    pub(super) output: &'a Output,
+    pub(super) output: &'a DerivationOutput,
     pub(super) values: Values,
     pub(super) name: String,
     compared: usize,
@@ -90,7 +90,7 @@ pub(super) fn sum_of_vectors(a: &[f64], b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| a + b).collect()
 }
 
-impl Case<'_, '_> {
+impl CompiledTestMechanism<'_, '_> {
     pub(super) fn find_function(&self, name: &str) -> Option<&Function> {
         self.output.functions.iter().find(|f| f.name == name)
     }
@@ -142,7 +142,7 @@ impl Case<'_, '_> {
         by: DerivativeVariable,
         of: &dyn Fn(&Values) -> Vec<f64>,
     ) {
-        let n = self.values.entry_count(by);
+        let n = self.values.entry_count_of_variable(by);
         let rows = of(&self.values).len();
         assert_eq!(found.len(), n * rows, "{what} by {by:?} of {}", self.name);
         for k in 0..n {
@@ -166,7 +166,7 @@ impl Case<'_, '_> {
         let rows = function_outputs(&self.values).len();
         let mut rest = &found[..];
         for by in by {
-            let (columns, after) = rest.split_at(self.values.entry_count(*by) * rows);
+            let (columns, after) = rest.split_at(self.values.entry_count_of_variable(*by) * rows);
             self.compare_columns_with_differences(what, columns, *by, &function_outputs);
             rest = after;
         }
@@ -227,7 +227,7 @@ impl Case<'_, '_> {
     }
 
     /// Compares every generated function with its variant compiled without passes.
-    fn check_against_unoptimised(&mut self, plain: &Output) {
+    fn check_against_unoptimised(&mut self, plain: &DerivationOutput) {
         for function in &plain.functions {
             if let Some(own) =
                 self.find_function(&function.name).filter(|own| has_comparable_results(own, function))
@@ -305,19 +305,23 @@ impl Case<'_, '_> {
 
     fn check_derivatives_of_outputs(&mut self) {
         let outputs: Vec<Function> =
-            self.output.functions.iter().filter(|f| f.id == Id::Output).cloned().collect();
+            self.output.functions.iter().filter(|f| f.id == GeneratedId::Output).cloned().collect();
         for function in outputs {
             let depends_on_velocities = function.arguments.contains(&catalogue::Argument::V);
             let by = if depends_on_velocities { DerivativeVariable::V } else { DerivativeVariable::Q };
-            let full_name = |suffix: &str| format!("{}{suffix}", function.name);
-            self.check_derivative_columns(&full_name(catalogue::JACOBIAN), &function.name, &[by]);
+            let function_name_with_suffix = |suffix: &str| format!("{}{suffix}", function.name);
             self.check_derivative_columns(
-                &full_name(catalogue::DERIVATIVES),
+                &function_name_with_suffix(catalogue::JACOBIAN),
+                &function.name,
+                &[by],
+            );
+            self.check_derivative_columns(
+                &function_name_with_suffix(catalogue::DERIVATIVES),
                 &function.name,
                 &[DerivativeVariable::Q, DerivativeVariable::V, DerivativeVariable::A, DerivativeVariable::U],
             );
             self.check_derivative_columns(
-                &full_name(catalogue::BY_PARAMETERS),
+                &function_name_with_suffix(catalogue::BY_PARAMETERS),
                 &function.name,
                 &[DerivativeVariable::Parameters],
             );
@@ -355,7 +359,7 @@ impl Case<'_, '_> {
             );
             let mut rest = &inputs[nv..];
             for by in [DerivativeVariable::Q, DerivativeVariable::V, DerivativeVariable::U] {
-                let (columns, after) = rest.split_at(self.values.entry_count(by) * nv);
+                let (columns, after) = rest.split_at(self.values.entry_count_of_variable(by) * nv);
                 self.compare_columns_with_differences("forces of inputs", columns, by, &joint_forces_at);
                 rest = after;
             }
@@ -438,16 +442,17 @@ impl Case<'_, '_> {
         let (changed, of) = (self.state_entry_changer(), |x: &Values| vec![of(x)]);
         let mut first = 0;
         for (rows, columns) in blocks {
-            let (m, n) = (self.values.entry_count(*rows), self.values.entry_count(*columns));
+            let (m, n) =
+                (self.values.entry_count_of_variable(*rows), self.values.entry_count_of_variable(*columns));
             for (i, j) in (0..n).flat_map(|j| (0..m).map(move |i| (i, j))) {
                 let entry = found[first + j * m + i];
                 let values = self.values.clone();
                 // The inner displacement starts at the end of the outer one.
                 let mixed_difference =
                     |outer: (DerivativeVariable, usize), inner: (DerivativeVariable, usize), h: f64| {
-                        difference(h, &|e| {
+                        sixth_order_difference(h, &|e| {
                             let there = changed(&values, outer.0, outer.1, e);
-                            difference(h, &|e| of(&changed(&there, inner.0, inner.1, e)))
+                            sixth_order_difference(h, &|e| of(&changed(&there, inner.0, inner.1, e)))
                         })[0]
                     };
                 let (row, column) = ((*rows, i), (*columns, j));
@@ -509,7 +514,7 @@ impl Case<'_, '_> {
         }
     }
 
-    fn check_requested_functions(&mut self) {
+    fn check_optional_functions(&mut self) {
         self.check_regressors();
         let output = self.output;
         let Values { v, a, .. } = self.values.clone();
@@ -573,5 +578,5 @@ fn has_comparable_results(a: &Function, b: &Function) -> bool {
     let called = a.shape.is_assembled_from_calls()
         || b.shape.is_assembled_from_calls()
         || a.name.starts_with("__passive");
-    a.shape == b.shape && a.arguments == b.arguments && !divided && !called && a.id != Id::Part
+    a.shape == b.shape && a.arguments == b.arguments && !divided && !called && a.id != GeneratedId::Part
 }

@@ -4,13 +4,13 @@
 
 use super::agreement::{SAME, largest_magnitude, sum_of_vectors};
 use super::values::Values;
-use crate::emitted::{Machine, Stop, Value};
+use crate::emitted::{InterpretationError, InterpreterState, Value};
 use linkwork_compiler::catalogue::{Argument, Shape};
-use linkwork_compiler::derive::{Function, Output};
+use linkwork_compiler::derive::{DerivationOutput, Function};
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::mechanism::{Chart, Model, SuppliedQuantity};
-use linkwork_compiler::{compile, expand, read_source};
+use linkwork_compiler::{compile, expand, parse_source_and_import};
 use proc_macro2::TokenStream;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -24,7 +24,7 @@ struct EmittedCode {
     bodies: BTreeMap<String, Vec<ImplItemFn>>,
 }
 
-fn parse_written_functions(text: &str) -> EmittedCode {
+fn parse_emitted_code(text: &str) -> EmittedCode {
     let mut all =
         EmittedCode { functions: BTreeMap::new(), constants: BTreeMap::new(), bodies: BTreeMap::new() };
     for item in syn::parse_file(text).expect("Rust").items {
@@ -136,12 +136,12 @@ fn argument_value(a: Argument, values: &Values) -> Option<Value> {
 pub fn compare_interpreted_function_bodies(arguments: &str, item: &str, seed: u64) -> BTreeSet<String> {
     let parse_tokens = |text: &str| -> TokenStream { text.parse().expect("the source is Rust") };
     let (mut cx, graph) = (Diagnostics::new(), Graph::new());
-    let source = read_source(parse_tokens(arguments), parse_tokens(item), Path::new(""), &mut cx);
+    let source = parse_source_and_import(parse_tokens(arguments), parse_tokens(item), Path::new(""), &mut cx);
     let Some((model, output)) = source.as_ref().and_then(|source| compile(source, &graph, &mut cx)) else {
         return BTreeSet::new();
     };
     let emitted = expand(parse_tokens(arguments), parse_tokens(item), Path::new(""));
-    let written = parse_written_functions(&emitted.text);
+    let written = parse_emitted_code(&emitted.text);
     check_index_constants(
         &model,
         &output,
@@ -168,7 +168,13 @@ pub fn compare_interpreted_function_bodies(arguments: &str, item: &str, seed: u6
 
 /// Compares two constants with the functions: the entries of the generalized forces that equal inputs, and
 /// the velocities of ball and free joints.
-fn check_index_constants(model: &Model<'_>, output: &Output, written: &EmittedCode, seed: u64, about: &str) {
+fn check_index_constants(
+    model: &Model<'_>,
+    output: &DerivationOutput,
+    written: &EmittedCode,
+    seed: u64,
+    about: &str,
+) {
     let optional_constant_entries =
         |name: &str| written.constants.get(name).map(numbers_in_option_expression);
     let forces = output.functions.iter().find(|f| f.name == "generalized_forces");
@@ -227,7 +233,7 @@ fn numbers_in_option_expression(expr: &Expr) -> Option<Vec<usize>> {
 /// false if the body calls other functions or an argument has no test value.
 fn check_emitted_body(
     model: &Model<'_>,
-    output: &Output,
+    output: &DerivationOutput,
     f: &Function,
     (patterns, body): &(Vec<Pat>, &Block),
     (states, seed): (usize, u64),
@@ -240,7 +246,7 @@ fn check_emitted_body(
     let all: Vec<Values> =
         all.iter().map(|values| Values { parameters: parameters.clone(), ..values.clone() }).collect();
     let named = model.parameters.iter().cloned().zip(parameters.iter().map(|x| Value::Number(*x)));
-    let mut machine = Machine { scopes: vec![BTreeMap::new()], parameters: named.collect(), states };
+    let mut machine = InterpreterState { scopes: vec![BTreeMap::new()], parameters: named.collect(), states };
     assert_eq!(patterns.len(), f.arguments.len(), "arguments of {about}");
     for (pattern, a) in patterns.iter().zip(&f.arguments) {
         let found: Option<Vec<Value>> = all.iter().map(|values| argument_value(*a, values)).collect();
@@ -250,8 +256,8 @@ fn check_emitted_body(
     }
     let mut result = match machine.execute_function_body(body) {
         Ok(value) => vec![value],
-        Err(Stop::Foreign) => return false,
-        Err(Stop::Wrong(what)) => panic!("{what}, {about}"),
+        Err(InterpretationError::Foreign) => return false,
+        Err(InterpretationError::Wrong(what)) => panic!("{what}, {about}"),
     };
     // The results of a function that writes to arguments are in these arguments.
     let into =

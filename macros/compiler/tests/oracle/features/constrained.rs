@@ -1,12 +1,14 @@
 //! Consistency of the functions of constraints and contacts with each other and with finite differences.
 
-use super::agreement::{Case, TOLERANCE, dot, largest_magnitude, matrix_vector_product, sum_of_vectors};
+use super::agreement::{
+    CompiledTestMechanism, TOLERANCE, dot, largest_magnitude, matrix_vector_product, sum_of_vectors,
+};
 use super::source;
 use super::values::{DerivativeVariable, Values};
 use linkwork_compiler::catalogue::{Record, Shape};
 use linkwork_compiler::mechanism::SuppliedQuantity;
 
-impl Case<'_, '_> {
+impl CompiledTestMechanism<'_, '_> {
     pub(super) fn check_constraints(&mut self) {
         let (Some(rates), Some(residuals)) = (
             self.find_function("constraint_rates").cloned(),
@@ -217,37 +219,40 @@ impl Case<'_, '_> {
             )
         };
         let mut rest = &found[..];
-        let mut part = |n: usize| {
+        let mut take_next_entries = |n: usize| {
             let (part, after) = rest.split_at(n);
             rest = after;
             part
         };
         self.compare_columns_with_differences(
             "forces with multipliers",
-            part(nv * nv),
+            take_next_entries(nv * nv),
             DerivativeVariable::Q,
             &residual_forces,
         );
         self.compare_columns_with_differences(
             "forces with multipliers",
-            part(nv * nv),
+            take_next_entries(nv * nv),
             DerivativeVariable::V,
             &residual_forces,
         );
         self.compare_columns_with_differences(
             "changes of rates",
-            part(nc * nv),
+            take_next_entries(nc * nv),
             DerivativeVariable::Q,
             &constraint_acceleration,
         );
         self.compare_columns_with_differences(
             "changes of rates",
-            part(nc * nv),
+            take_next_entries(nc * nv),
             DerivativeVariable::V,
             &constraint_acceleration,
         );
-        self.compare_columns_with_differences("rates", part(nc * nv), DerivativeVariable::Q, &|x| {
-            x.run_function(output, &rates)
-        });
+        self.compare_columns_with_differences(
+            "rates",
+            take_next_entries(nc * nv),
+            DerivativeVariable::Q,
+            &|x| x.run_function(output, &rates),
+        );
     }
 }

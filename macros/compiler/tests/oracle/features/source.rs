@@ -6,9 +6,9 @@ use crate::random::Random;
 use std::fmt::Write;
 
 /// Joint type for random mechanisms: name of the type, arguments, and names of its coordinates.
-type Joint = (&'static str, &'static str, &'static [&'static str]);
+type JointType = (&'static str, &'static str, &'static [&'static str]);
 
-const JOINTS: [Joint; 12] = [
+const JOINTS: [JointType; 12] = [
     ("Pin", "about", &[""]),
     ("Sleeve", "along", &[""]),
     ("Screw", "pitch = 0.1, about", &[""]),
@@ -127,7 +127,7 @@ const WORDS: [&str; 17] = [
 ];
 
 /// Fields generated so far, and names that further fields may use.
-struct Source {
+struct SourceGenerator {
     random: Random,
     fields: String,
     bodies: Vec<String>,
@@ -145,7 +145,7 @@ struct Source {
 
 /// Returns the attribute's arguments and the struct for a seed.
 pub fn random_source(seed: u64) -> (String, String) {
-    let mut source = Source {
+    let mut source = SourceGenerator {
         random: Random::new(seed),
         fields: "look: Table<1>, command: Input, #[output(look(2) + command)] seen: Scalar,\n".to_string(),
         bodies: Vec::new(),
@@ -178,7 +178,7 @@ pub fn random_source(seed: u64) -> (String, String) {
     (arguments, format!("pub struct Any {{\n{}}}", source.fields))
 }
 
-impl Source {
+impl SourceGenerator {
     fn happens_one_time_in(&mut self, one_in: usize) -> bool {
         self.random.index_below(one_in) == 0
     }
@@ -311,13 +311,13 @@ impl Source {
         named.cloned().unwrap_or_else(|| "ground".to_string())
     }
 
-    fn random_value(&mut self) -> String {
+    fn random_scalar_value_expression(&mut self) -> String {
         let form = self.random_choice(&VALUES);
         self.fill_placeholders(form)
     }
 
     fn add_random_element(&mut self, k: usize) {
-        let random_list_entry = |source: &mut Source, list: fn(&Source) -> &Vec<String>| {
+        let random_list_entry = |source: &mut SourceGenerator, list: fn(&SourceGenerator) -> &Vec<String>| {
             let n = list(source).len();
             (n > 0).then(|| source.random.index_below(n)).map(|n| list(source)[n].clone())
         };
@@ -351,7 +351,7 @@ impl Source {
             (5, ..) => format!(
                 "#[acts(on = {}, value = ({}) * ground.x)] element{k}: Force",
                 self.random_point_expression(),
-                self.random_value()
+                self.random_scalar_value_expression()
             ),
             (6, ..) => format!(
                 "#[output(v({} / ground / ground))] output{k}: Vector",
@@ -369,7 +369,7 @@ impl Source {
             (10, Some(on), _) => format!("#[limit(on = {on}, from = -1, to = 1)] limit{k}: Limit"),
             (11, ..) => {
                 self.has_constraints = true;
-                format!("#[constraint({})] constraint{k}: Holonomic", self.random_value())
+                format!("#[constraint({})] constraint{k}: Holonomic", self.random_scalar_value_expression())
             }
             (30 | 31, _, Some(body)) => {
                 let surfaces = self.random_choice(&SURFACES).replace('H', &body);
@@ -378,7 +378,7 @@ impl Source {
                      Contact"
                 )
             }
-            (12, ..) => format!("#[output({})] output{k}: Scalar", self.random_value()),
+            (12, ..) => format!("#[output({})] output{k}: Scalar", self.random_scalar_value_expression()),
             _ => self.declaration_of_rare_element(kind, k),
         };
         let _ = writeln!(self.fields, "{field},");
@@ -421,7 +421,7 @@ impl Source {
                 self.points.push(format!("point{k}"));
                 format!("#[point(on = {body}, at = {at} + 0.3 * {coordinate} * y)] point{k}: Point")
             }
-            21 => format!("#[energy({})] energy{k}: Potential", self.random_value()),
+            21 => format!("#[energy({})] energy{k}: Potential", self.random_scalar_value_expression()),
             22 => format!("#[dissipation(0.2 * pow(rate({coordinate}), 2))] loss{k}: Rayleigh"),
             23 => {
                 self.has_constraints = true;
@@ -436,7 +436,7 @@ impl Source {
                 format!("#[constraint(rolls({body}.sphere(0.2), ground.plane(y)))] constraint{k}: Rolling")
             }
             25 => {
-                let rate = self.random_value();
+                let rate = self.random_scalar_value_expression();
                 self.states.push(format!("state{k}"));
                 format!("#[state(rate = {rate})] state{k}: State")
             }

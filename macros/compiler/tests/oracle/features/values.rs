@@ -1,8 +1,8 @@
 //! Numeric evaluation of the functions of a compiled mechanism at a state, and of their derivatives.
 
 use crate::random::Random;
-use linkwork_compiler::catalogue::Called;
-use linkwork_compiler::derive::{Function, Output, Prepared};
+use linkwork_compiler::catalogue::CalledFunction;
+use linkwork_compiler::derive::{DerivationOutput, Function, PreparedFunctions};
 use linkwork_compiler::lower::Program;
 use linkwork_compiler::mechanism::{Chart, Model, Quantity, SuppliedQuantity};
 
@@ -63,19 +63,19 @@ impl Values {
     }
 
     /// Returns the results of a generated function. Results of functions that it calls are computed first.
-    pub fn run_function(&self, output: &Output, function: &Function) -> Vec<f64> {
+    pub fn run_function(&self, output: &DerivationOutput, function: &Function) -> Vec<f64> {
         self.run_program(output, function, false)
     }
 
     /// Returns the results of a function's program with SIMD lanes, if there is one.
-    pub fn run_lanes(&self, output: &Output, function: &Function) -> Option<Vec<f64>> {
+    pub fn run_lanes(&self, output: &DerivationOutput, function: &Function) -> Option<Vec<f64>> {
         function.program.simd.is_some().then(|| self.run_program(output, function, true))
     }
 
-    fn run_program(&self, output: &Output, function: &Function, lanes: bool) -> Vec<f64> {
-        let called = Called::ALL.map(|called| {
+    fn run_program(&self, output: &DerivationOutput, function: &Function, lanes: bool) -> Vec<f64> {
+        let called = CalledFunction::ALL.map(|called| {
             let of = output.functions.iter().find(|f| f.name == called.function_name());
-            of.map_or_else(Vec::new, |f| self.run_without_calls(&f.program))
+            of.map_or_else(Vec::new, |f| self.run_self_contained_program(&f.program))
         });
         let program = function.program.simd.as_deref().filter(|_| lanes).unwrap_or(&function.program);
         program.interpret_program(&|s| match Quantity::from_symbol(s) {
@@ -86,7 +86,7 @@ impl Values {
     }
 
     /// Returns the results of a function of the prepared mechanism.
-    pub fn run_prepared_function(&self, prepared: &Prepared, function: &Function) -> Vec<f64> {
+    pub fn run_prepared_function(&self, prepared: &PreparedFunctions, function: &Function) -> Vec<f64> {
         let numbers =
             prepared.numbers.interpret_program(&|s| self.value_of_quantity(Quantity::from_symbol(s), &[]));
         let outputs_of_function = |name: &str| {
@@ -95,7 +95,7 @@ impl Values {
                 f.program.interpret_program(&|s| self.value_of_quantity(Quantity::from_symbol(s), &numbers))
             })
         };
-        let called = Called::ALL.map(|called| outputs_of_function(called.function_name()));
+        let called = CalledFunction::ALL.map(|called| outputs_of_function(called.function_name()));
         function.program.interpret_program(&|s| match Quantity::from_symbol(s) {
             Quantity::PassiveForce(k) => called[0][k],
             Quantity::PassiveDerivative(k) => called[1][k],
@@ -135,7 +135,7 @@ impl Values {
     }
 
     /// Returns the results of a program that calls no other function.
-    fn run_without_calls(&self, program: &Program) -> Vec<f64> {
+    fn run_self_contained_program(&self, program: &Program) -> Vec<f64> {
         program.interpret_program(&|s| self.value_of_quantity(Quantity::from_symbol(s), &[]))
     }
 
@@ -169,7 +169,7 @@ impl Values {
         values
     }
 
-    pub fn entry_count(&self, by: DerivativeVariable) -> usize {
+    pub fn entry_count_of_variable(&self, by: DerivativeVariable) -> usize {
         match by {
             DerivativeVariable::Q | DerivativeVariable::V => self.v.len(),
             DerivativeVariable::A => self.a.len(),
@@ -225,21 +225,21 @@ fn rotate_quaternion(quaternion: &mut [f64], step: &[f64]) {
 }
 
 /// Returns the derivative at zero of a function, by sixth-order differences with steps of `h`.
-pub fn difference(h: f64, of: &dyn Fn(f64) -> Vec<f64>) -> Vec<f64> {
+pub fn sixth_order_difference(h: f64, of: &dyn Fn(f64) -> Vec<f64>) -> Vec<f64> {
     let [one, two, three] = [h, 2.0 * h, 3.0 * h].map(|h| (of(h), of(-h)));
     let central_difference = |(plus, minus): &(Vec<f64>, Vec<f64>), k: usize| plus[k] - minus[k];
-    let derivative_of_entry = |k: usize| {
+    let derivative_of_result_entry = |k: usize| {
         (45.0 * central_difference(&one, k) - 9.0 * central_difference(&two, k)
             + central_difference(&three, k))
             / (60.0 * h)
     };
-    (0..one.0.len()).map(derivative_of_entry).collect()
+    (0..one.0.len()).map(derivative_of_result_entry).collect()
 }
 
 /// Returns the derivative at zero of a function, with an error estimate. Halving the step changes the result
 /// by 63 times the remaining error.
 pub fn derivative_with_error(of: &dyn Fn(f64) -> Vec<f64>) -> (Vec<f64>, f64) {
-    let (wide, narrow) = (difference(H, of), difference(0.5 * H, of));
+    let (wide, narrow) = (sixth_order_difference(H, of), sixth_order_difference(0.5 * H, of));
     let doubt = wide.iter().zip(&narrow).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
     (narrow, doubt / 8.0)
 }

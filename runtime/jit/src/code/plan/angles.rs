@@ -3,7 +3,7 @@
 //! A group fills a register. In the array of angles its angles are followed by their sines, then by their
 //! cosines. All groups but the last one have [`WIDEST`] angles.
 
-use super::{Memory, Place, Planner, Residence, Step, WIDEST};
+use super::{MemoryLocation, Place, Planner, Residence, Step, WIDEST};
 use linkwork_compiler::expr::Function;
 use linkwork_compiler::lower::{Angles, Op, Operand};
 
@@ -48,9 +48,10 @@ impl AngleGroup {
 /// Whether an input follows `count` other inputs in memory.
 fn is_next_input(first: Place, count: usize, second: Place) -> bool {
     match (first, second) {
-        (Place::Memory(Memory::Input(slot, index)), Place::Memory(Memory::Input(other, next))) => {
-            slot == other && next == index + count
-        }
+        (
+            Place::Memory(MemoryLocation::Input(slot, index)),
+            Place::Memory(MemoryLocation::Input(other, next)),
+        ) => slot == other && next == index + count,
         _ => false,
     }
 }
@@ -63,7 +64,7 @@ fn padded(count: usize) -> usize {
 
 /// Returns the index of the first number of a group in the array of angles, where the group contains angle
 /// `at`.
-fn first_of_group(at: usize) -> usize {
+fn group_start_in_array(at: usize) -> usize {
     at / WIDEST * 3 * WIDEST
 }
 
@@ -78,7 +79,7 @@ impl Planner<'_> {
     }
 
     /// Returns the angles that fill the groups, in order, with their numbers of lanes.
-    fn padded_angles(&self, angles: &Angles) -> Vec<(Operand, usize)> {
+    fn angles_with_padding(&self, angles: &Angles) -> Vec<(Operand, usize)> {
         let list = angles.angles_by_descending_width(self.program, |angle| self.width_of_angle(angle));
         let mut all: Vec<_> =
             list.iter().map(|angle| (angle.angle, self.width_of_angle(angle.angle))).collect();
@@ -96,7 +97,7 @@ impl Planner<'_> {
 
     /// Plans the computation of the angles, their sines and cosines.
     pub(super) fn angles(&mut self, angles: &Angles) -> Result<(), String> {
-        let all = self.padded_angles(angles);
+        let all = self.angles_with_padding(angles);
         if all.is_empty() {
             return Ok(());
         }
@@ -125,7 +126,7 @@ impl Planner<'_> {
         }
         for (angle, _) in all {
             if let Operand::Value(k) = angle {
-                self.end_use_of_angle(k);
+                self.release_angle(k);
             }
         }
         self.plan.steps.push(Step::Sines);
@@ -145,7 +146,7 @@ impl Planner<'_> {
                 Op::Call(f, operand) if angles.covered[k] => {
                     let known = places.iter().find(|(angle, _)| *angle == operand);
                     let (_, at) = *known.ok_or("an angle is missing")?;
-                    let group = first_of_group(at);
+                    let group = group_start_in_array(at);
                     let width = (count - at / WIDEST * WIDEST).min(WIDEST);
                     let offset = if f == Function::Sin { width } else { 2 * width };
                     self.sines.insert(k, group + offset + at % WIDEST);
@@ -169,12 +170,12 @@ impl Planner<'_> {
                 Some(Residence { memory: Some(memory), .. }) => Ok(Place::Memory(memory)),
                 _ => Err("an angle is nowhere".to_string()),
             },
-            other => self.leaf(other).map(Place::Memory),
+            other => self.memory_of_leaf_operand(other).map(Place::Memory),
         }
     }
 
     /// Releases the register and the memory of an angle.
-    fn end_use_of_angle(&mut self, k: usize) {
+    fn release_angle(&mut self, k: usize) {
         self.uses[k].clear();
         if let Some((width, entry)) = self.release_dead_value(k) {
             self.free.entry(width).or_default().push(entry);

@@ -1,6 +1,6 @@
 //! Allocation of registers and of the work space.
 
-use super::{Memory, Place, Planner, Residence, Step, Target, is_call};
+use super::{LaneStore, MemoryLocation, Place, Planner, Residence, Step, is_call};
 use linkwork_compiler::expr::Symbol;
 use linkwork_compiler::lower::{Op, Operand};
 
@@ -8,7 +8,7 @@ use linkwork_compiler::lower::{Op, Operand};
 const SOON: usize = 12;
 
 impl Planner<'_> {
-    pub(super) fn instruction(&mut self, k: usize, stores: &[Target]) -> Result<(), String> {
+    pub(super) fn instruction(&mut self, k: usize, stores: &[LaneStore]) -> Result<(), String> {
         let op = self.program.instructions[k];
         let operands = self.operands(k);
         if is_call(&op) {
@@ -43,13 +43,13 @@ impl Planner<'_> {
         let mut residence = Residence { register: Some(to), memory: None };
         for target in stores {
             match *target {
-                Target::First(memory, width) => {
+                LaneStore::First(memory, width) => {
                     self.plan.steps.push(Step::Store(to, memory, width));
                     if width == self.widths[k] {
                         residence.memory.get_or_insert(memory);
                     }
                 }
-                Target::Second(memory) => self.plan.steps.push(Step::StoreSecond(to, memory)),
+                LaneStore::Second(memory) => self.plan.steps.push(Step::StoreSecond(to, memory)),
             }
         }
         if !self.uses[k].is_empty() {
@@ -74,7 +74,7 @@ impl Planner<'_> {
                         None => Place::Memory(memory.ok_or("a value is nowhere")?),
                     }
                 }
-                other => Place::Memory(self.leaf(other)?),
+                other => Place::Memory(self.memory_of_leaf_operand(other)?),
             });
         }
         let first = *places.first().ok_or("an operand is missing")?;
@@ -82,18 +82,18 @@ impl Planner<'_> {
     }
 
     /// Returns the position of an operand that is not the value of an instruction of the body.
-    pub(super) fn leaf(&mut self, operand: Operand) -> Result<Memory, String> {
+    pub(super) fn memory_of_leaf_operand(&mut self, operand: Operand) -> Result<MemoryLocation, String> {
         match operand {
-            Operand::Const(c) => Ok(Memory::Constant(self.constant(&[c]))),
+            Operand::Const(c) => Ok(MemoryLocation::Constant(self.constant(&[c]))),
             Operand::Symbol(symbol) => self.input(symbol),
-            Operand::Tuple(k) => Ok(Memory::Constant(self.constant(&self.program.tuples[k]))),
+            Operand::Tuple(k) => Ok(MemoryLocation::Constant(self.constant(&self.program.tuples[k]))),
             // The inputs are adjacent.
             Operand::Gather(k) => {
                 let symbols = &self.program.gathers[k];
                 symbols.iter().rev().map(|symbol| self.input(*symbol)).last().ok_or("no input")?
             }
             Operand::Value(k) => match self.sines.get(&k) {
-                Some(at) => Ok(Memory::Angle(*at)),
+                Some(at) => Ok(MemoryLocation::Angle(*at)),
                 None => Err("a value is used before it is computed".to_string()),
             },
         }
@@ -110,10 +110,11 @@ impl Planner<'_> {
         })
     }
 
-    fn input(&mut self, symbol: Symbol) -> Result<Memory, String> {
-        let (slot, index) = self.layout.locate(symbol).ok_or("a program reads what it is not given")?;
+    fn input(&mut self, symbol: Symbol) -> Result<MemoryLocation, String> {
+        let (slot, index) =
+            self.layout.locate_symbol(symbol).ok_or("a program reads what it is not given")?;
         self.plan.lengths[slot] = self.plan.lengths[slot].max(index + 1);
-        Ok(Memory::Input(slot, index))
+        Ok(MemoryLocation::Input(slot, index))
     }
 
     /// Loads a value in memory into a register if an instruction soon after instruction `now` uses it again.
@@ -130,10 +131,12 @@ impl Planner<'_> {
 
     /// Returns a register without a value. If all have values, the one whose next use is last goes to memory.
     fn take_register(&mut self) -> u8 {
-        let next = |value: Option<usize>| value.and_then(|k| self.uses[k].last().copied());
+        let next_use_of_value = |value: Option<usize>| value.and_then(|k| self.uses[k].last().copied());
         let free = self.values.iter().position(Option::is_none);
         let register = free.unwrap_or_else(|| {
-            (0..self.values.len()).max_by_key(|register| next(self.values[*register])).unwrap_or(0)
+            (0..self.values.len())
+                .max_by_key(|register| next_use_of_value(self.values[*register]))
+                .unwrap_or(0)
         });
         self.evict_value(register);
         register as u8
@@ -147,7 +150,7 @@ impl Planner<'_> {
         if residence.memory.is_none() {
             let width = self.widths[k];
             let free = self.free.get_mut(&width).and_then(Vec::pop);
-            let memory = Memory::Work(free.unwrap_or_else(|| {
+            let memory = MemoryLocation::Work(free.unwrap_or_else(|| {
                 let at = self.plan.work.next_multiple_of(width);
                 let gap = self.plan.work..at;
                 self.free.entry(1).or_default().extend(gap);
@@ -167,7 +170,7 @@ impl Planner<'_> {
             self.values[usize::from(register)] = None;
         }
         match memory {
-            Some(Memory::Work(at)) => Some((self.widths[k], at)),
+            Some(MemoryLocation::Work(at)) => Some((self.widths[k], at)),
             _ => None,
         }
     }

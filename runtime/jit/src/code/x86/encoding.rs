@@ -189,7 +189,7 @@ impl Assembler {
         self.bytes.extend(value.to_le_bytes());
     }
 
-    pub fn add_to_stack(&mut self, bytes: i32) {
+    pub fn add_to_stack_pointer(&mut self, bytes: i32) {
         if bytes != 0 {
             self.bytes.extend([0x48, 0x81, 0xC4]);
             self.bytes.extend(bytes.to_le_bytes());

@@ -5,7 +5,7 @@ use super::{FRAME, Writer};
 
 /// General registers of a function.
 #[derive(Clone, Copy)]
-pub struct Registers {
+pub struct GeneralRegisterRoles {
     /// Address of the constants, plus [`BIAS`] bytes.
     pub constants: u8,
     pub more: u8,
@@ -20,7 +20,7 @@ pub struct Registers {
 
 /// Registers of functions that call others: values that are needed after a call are in registers that calls
 /// preserve.
-pub const CALLING: Registers = Registers {
+pub const CALLING: GeneralRegisterRoles = GeneralRegisterRoles {
     constants: RBX,
     more: 12,
     results: 13,
@@ -30,7 +30,7 @@ pub const CALLING: Registers = Registers {
     saved: &[RBX, FRAME, 12, 13, 14, 15],
 };
 /// Registers of functions that call none, except for large angles: the arguments stay where they are.
-pub const LEAF: Registers = Registers {
+pub const LEAF: GeneralRegisterRoles = GeneralRegisterRoles {
     constants: RSI,
     more: 8,
     results: RCX,
@@ -40,16 +40,16 @@ pub const LEAF: Registers = Registers {
     saved: &[FRAME],
 };
 
-impl Registers {
+impl GeneralRegisterRoles {
     /// Returns the registers that calls may change and whose values are needed afterwards: an even number,
     /// which leaves the stack aligned.
-    pub fn scratch(self) -> &'static [u8] {
+    pub fn registers_to_save_around_calls(self) -> &'static [u8] {
         if self.inputs == LEAF.inputs { &[RSI, 8, RCX, RDI] } else { &[] }
     }
 }
 
 /// Address of an input in a register.
-pub struct Pointer {
+pub struct InputAddressInRegister {
     /// Index of the input.
     pub slot: usize,
     /// Number of the last use of the address.
@@ -60,8 +60,8 @@ impl Writer<'_> {
     /// Returns the general register with the address of an input, which is loaded if it is in no register.
     /// If there are too few registers, the least recently used address is overwritten: those of the operands
     /// of one instruction stay.
-    pub fn pointer(&mut self, slot: usize) -> u8 {
-        let Registers { pointers, inputs, .. } = self.registers;
+    pub fn register_with_input_address(&mut self, slot: usize) -> u8 {
+        let GeneralRegisterRoles { pointers, inputs, .. } = self.registers;
         let known = self.pointers.iter().position(|known| known.slot == slot);
         let at = known.unwrap_or_else(|| {
             let count = self.pointers.len();
@@ -73,7 +73,7 @@ impl Writer<'_> {
             at
         });
         self.uses += 1;
-        let pointer = Pointer { slot, last: self.uses };
+        let pointer = InputAddressInRegister { slot, last: self.uses };
         match self.pointers.get_mut(at) {
             Some(known) => *known = pointer,
             None => self.pointers.push(pointer),

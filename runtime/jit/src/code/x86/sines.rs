@@ -2,7 +2,7 @@
 //! order. Larger angles are left to the runtime.
 
 use super::encoding::*;
-use super::{Memory, Writer};
+use super::{MemoryLocation, Writer};
 use crate::code::plan::{AngleGroup, WIDEST};
 use linkwork::__private::{COSINE, LARGEST_ANGLE, QUARTER_TURN, ROUND, SINE};
 use linkwork_compiler::lower::{Op, Operand};
@@ -10,7 +10,7 @@ use std::f64::consts::FRAC_2_PI;
 
 /// Jump to the code for large angles: the index of its distance in the code, and the inputs whose addresses
 /// are in registers.
-pub struct Jump {
+pub struct LargeAngleJump {
     distance: usize,
     pointers: Vec<usize>,
 }
@@ -52,7 +52,7 @@ const SUM_MINUS_PRODUCT: Op = Op::NegMulAdd(NONE, NONE, NONE);
 
 impl Writer<'_> {
     /// Returns the address operand of constant `k` of [`constants`], in all lanes.
-    fn constant_of_sines(&self, k: usize) -> Rm {
+    fn operand_for_sine_constant(&self, k: usize) -> Rm {
         self.constant(self.masks + (2 + k) * WIDEST)
     }
 
@@ -62,11 +62,11 @@ impl Writer<'_> {
         // The first group is computed first, and stays in its register.
         for (k, group) in plan.angles.iter().enumerate().rev() {
             self.join_angles(group);
-            self.store(ANGLE, angles_of_group(k), group.width());
+            self.store(ANGLE, memory_of_group_angles(k), group.width());
         }
         for (k, group) in plan.angles.iter().enumerate() {
             if k > 0 {
-                let from = self.memory(angles_of_group(k));
+                let from = self.memory(memory_of_group_angles(k));
                 self.code.load(ANGLE, from, group.width());
             }
             self.write_large_angle_comparison(k == 0, packed_width(group));
@@ -77,7 +77,7 @@ impl Writer<'_> {
         self.code.instruction(encoding_on_lanes(TEST, widest), LARGE, 0, Rm::Register(LARGE));
         self.code.bytes.extend([0x0F, 0x85]); // jne
         let pointers = self.pointers.iter().map(|pointer| pointer.slot).collect();
-        self.slow = Some(Jump { distance: self.code.bytes.len(), pointers });
+        self.slow = Some(LargeAngleJump { distance: self.code.bytes.len(), pointers });
         self.code.bytes.extend([0; 4]);
         Ok(())
     }
@@ -118,7 +118,7 @@ impl Writer<'_> {
             ANGLE,
             self.constant(self.masks + WIDEST),
         );
-        let largest = self.constant_of_sines(0);
+        let largest = self.operand_for_sine_constant(0);
         self.code.instruction(encoding_on_lanes(COMPARE, width), to, OTHER, largest);
         self.code.bytes.push(GREATER);
         if !is_first {
@@ -130,11 +130,12 @@ impl Writer<'_> {
     /// with fused products and sums.
     fn write_reduced_sines(&mut self, width: usize) -> Result<(), String> {
         let r = Rm::Register;
-        let constant = |k: usize| self.constant_of_sines(k);
-        let ([per_angle, round], [minus_half, one]) = ([1, 2].map(constant), [18, 19].map(constant));
-        let quarter: [Rm; 3] = std::array::from_fn(|k| constant(3 + k));
-        let sine: [Rm; 6] = std::array::from_fn(|k| constant(6 + k));
-        let cosine: [Rm; 6] = std::array::from_fn(|k| constant(12 + k));
+        let sine_constant_operand = |k: usize| self.operand_for_sine_constant(k);
+        let ([per_angle, round], [minus_half, one]) =
+            ([1, 2].map(sine_constant_operand), [18, 19].map(sine_constant_operand));
+        let quarter: [Rm; 3] = std::array::from_fn(|k| sine_constant_operand(3 + k));
+        let sine: [Rm; 6] = std::array::from_fn(|k| sine_constant_operand(6 + k));
+        let cosine: [Rm; 6] = std::array::from_fn(|k| sine_constant_operand(12 + k));
         let steps = [
             (PRODUCT_AND_SUM, SHIFTED, [r(ANGLE), per_angle, round]),
             (DIFFERENCE, OTHER, [r(SHIFTED), round, r(OTHER)]),
@@ -188,34 +189,34 @@ impl Writer<'_> {
         self.code.instruction(encoding_on_lanes(XOR, packed), exchange, exchange, register(sign));
         for (result, sign, at) in [(LOW, sign, width), (SQUARE, exchange, 2 * width)] {
             self.code.instruction(encoding_on_lanes(XOR, packed), result, result, register(sign));
-            self.store(result, Memory::Angle(3 * WIDEST * group + at), width);
+            self.store(result, MemoryLocation::Angle(3 * WIDEST * group + at), width);
         }
     }
 
     /// Writes the code for large angles, behind that of the function: a call of the runtime for all angles.
     pub(super) fn write_large_angle_code(&mut self) -> Result<(), String> {
-        let Some(Jump { distance, pointers }) = self.slow.take() else { return Ok(()) };
+        let Some(LargeAngleJump { distance, pointers }) = self.slow.take() else { return Ok(()) };
         let back = distance + 4;
-        self.write_distance(distance, self.code.bytes.len())?;
-        let saved = self.registers.scratch();
+        self.write_jump_distance(distance, self.code.bytes.len())?;
+        let saved = self.registers.registers_to_save_around_calls();
         saved.iter().for_each(|register| self.code.general(0x50, *register));
-        if let Rm::Memory(base, at) = self.memory(Memory::Angle(0)) {
+        if let Rm::Memory(base, at) = self.memory(MemoryLocation::Angle(0)) {
             self.code.write_effective_address_load(RDI, base, at);
         }
         self.code.write_move_immediate(RSI, self.plan.angle_count() as u64);
         self.call("sines")?;
         saved.iter().rev().for_each(|register| self.code.general(0x58, *register));
         for slot in pointers {
-            self.pointer(slot);
+            self.register_with_input_address(slot);
         }
         self.code.bytes.push(0xE9); // jmp
         let distance = self.code.bytes.len();
         self.code.bytes.extend([0; 4]);
-        self.write_distance(distance, back)
+        self.write_jump_distance(distance, back)
     }
 
     /// Writes the distance of a jump, which counts from the end of the distance.
-    fn write_distance(&mut self, at: usize, target: usize) -> Result<(), String> {
+    fn write_jump_distance(&mut self, at: usize, target: usize) -> Result<(), String> {
         let distance = i32::try_from(target as i64 - (at as i64 + 4)).map_err(|_| "a program is too long")?;
         self.code.bytes[at..at + 4].copy_from_slice(&distance.to_le_bytes());
         Ok(())
@@ -223,8 +224,8 @@ impl Writer<'_> {
 }
 
 /// Returns the location of the angles of a group in the array.
-fn angles_of_group(group: usize) -> Memory {
-    Memory::Angle(3 * WIDEST * group)
+fn memory_of_group_angles(group: usize) -> MemoryLocation {
+    MemoryLocation::Angle(3 * WIDEST * group)
 }
 
 /// Returns the number of lanes of the instructions for a group.

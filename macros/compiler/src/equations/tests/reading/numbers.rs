@@ -56,21 +56,21 @@ pub fn assert_same_roots(a: &[Complex<f64>], b: &[Complex<f64>], tolerance: f64)
 }
 
 /// A numerical model of a mechanism: accelerations of Lagrange's equations.
-pub struct Numbers<'g> {
+pub struct NumericalMechanism<'g> {
     nv: usize,
     forces: crate::expr::eval::Tape<'g>,
     quaternion: bool,
 }
 
-impl<'g> Numbers<'g> {
-    pub fn new(model: &Model<'g>) -> Numbers<'g> {
+impl<'g> NumericalMechanism<'g> {
+    pub fn new(model: &Model<'g>) -> NumericalMechanism<'g> {
         let joints = crate::kinematics::joints_of_model(model);
         let lagrange = lagrange::derive(model, &joints);
-        let inputs = forces::generalized_forces(model, &joints);
+        let inputs = forces::generalized_forces_of_inputs(model, &joints);
         let mut all = lagrange.mass_matrix.concat();
         all.extend(inputs.iter().zip(&lagrange.bias).map(|(tau, bias)| *tau - *bias));
         let quaternion = model.nq() > model.nv();
-        Numbers { nv: model.nv(), forces: crate::expr::eval::Tape::new(&all), quaternion }
+        NumericalMechanism { nv: model.nv(), forces: crate::expr::eval::Tape::new(&all), quaternion }
     }
 
     pub fn accelerations(&self, q: &[f64], v: &[f64], u: &[f64], parameters: &[f64]) -> Vec<f64> {

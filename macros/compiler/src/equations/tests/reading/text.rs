@@ -141,14 +141,14 @@ impl ParsedEquations {
 
     /// Returns the coefficients of a name in all equations, on the left or on the right sides.
     pub fn coefficient_column(&self, name: &str, right: bool, parameters: NameValues<'_>) -> Vec<f64> {
-        let value_with_unit_variable = |word: &str| match word {
+        let name_value_with_unit_variable = |word: &str| match word {
             _ if word == name => 1.0,
             _ if self.is_variable_name(word) => 0.0,
             _ => parameters(word),
         };
         self.equations
             .iter()
-            .map(|(a, b)| evaluate_text(if right { b } else { a }, &value_with_unit_variable))
+            .map(|(a, b)| evaluate_text(if right { b } else { a }, &name_value_with_unit_variable))
             .collect()
     }
 
