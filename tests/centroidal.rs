@@ -23,7 +23,7 @@ struct Humanoid;
 #[mechanism(urdf = "../models/urdf/panda.urdf", centroidal)]
 struct Panda;
 
-/// Mechanism with joints of all kinds, and a bead on a wire that is fixed to a body.
+/// Mechanism with a universal joint, a ball joint and a screw, and a bead on a wire that is fixed to a body.
 #[mechanism(gravity = [0.3, -9.7, 0.4], centroidal)]
 struct MechanismOfAllJoints {
     mass: f64,

@@ -65,7 +65,8 @@ struct Puma {
     yaw: Pin,
 }
 
-/// Mechanism with joints of all kinds, bodies away from their joints, and a bead on a wire.
+/// Mechanism with a universal joint, a ball joint, a screw and a sleeve, bodies away from their joints, and a
+/// bead on a wire.
 #[mechanism(gravity = [0.3, -9.7, 0.4], regressor)]
 struct MechanismOfAllJoints {
     mass: f64,

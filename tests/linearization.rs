@@ -73,7 +73,7 @@ macro_rules! check_differences {
     }};
 }
 
-/// Joints of every kind, springs, dashpots, friction, and inputs on coordinates and bodies; some of the
+/// Joints of seven kinds, springs, a dashpot, friction, and inputs on coordinates and bodies; some of the
 /// values are parameters.
 #[mechanism(gravity = 0.3 * x - 0.4 * y - 9.7 * z, derivatives)]
 struct MechanismOfAllJoints {

@@ -169,7 +169,8 @@ fn prepared_driven_mechanism_equals_the_mechanism() {
     assert!((final_coordinate(one) - final_coordinate(other)).abs() < 1e-9);
 }
 
-/// Four-bar linkage with all options that request functions.
+/// Four-bar linkage with precomputed values, and with derivatives, centroidal momentum, regressor,
+/// sensitivities, the packed mass matrix and functions of several states.
 #[mechanism(
     gravity = -g * y,
     prepare,

@@ -1,4 +1,4 @@
-//! Single integration steps of a mechanism as maps of state and input, with their exact Jacobians. Kalman
+//! Single integration steps of a mechanism as maps of state and input, with their Jacobians. Kalman
 //! filters, iLQR, DDP and multiple shooting are built from them.
 //!
 //! A step maps the state `(q, v)` at time `t` to the state one period of the method later, under constant

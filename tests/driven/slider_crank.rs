@@ -347,7 +347,7 @@ fn contradictory_drives_are_reported() {
     assert!(matches!(found, Err(ConstraintError::Configuration { .. })), "{found:?}");
 }
 
-/// Checks that all options of generated functions work for a mechanism without degrees of freedom:
+/// Checks that options of generated functions work for a mechanism without degrees of freedom:
 /// derivatives along a prescribed motion, and the force of a drive against a gas.
 #[test]
 fn optional_functions_work_without_degrees_of_freedom() {

@@ -27,8 +27,9 @@ pub struct Tree {
     gravity: [f64; 3],
 }
 
-/// Elements between points `@a` and `@b` of bodies or the ground, of which the first is on a body. They have
-/// inertia, store, dissipate or supply energy, or are particles placed along axes of the body or the ground.
+/// Templates of elements that have inertia, store, dissipate or supply energy, and of particles placed along
+/// axes of the body or the ground. `@a` is a point of a body, `@o` this body, `@b` a point of another body or
+/// the ground, and `#` the number of the element.
 const TIES: [&str; 9] = [
     "#[acts(between = (@b, @a), stiffness = 3, free_length = 0.2)] #: Spring,",
     "#[acts(between = (@b, @a), damping = 0.6)] #: Dashpot,",

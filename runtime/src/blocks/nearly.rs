@@ -154,7 +154,8 @@ impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
         sum
     }
 
-    /// Computes [`lead`](Self::lead) for a matrix that differs from the identity in more than eight rows.
+    /// Replaces `A` by the product `D A` for a matrix `D` that differs from the identity in more than eight
+    /// rows.
     #[inline(always)]
     fn left_multiply_many_rows<A: Arithmetic, const C: usize>(&self, a: &mut SMatrix<T, N, C>) {
         let length = N.min(8);

@@ -190,7 +190,8 @@ fn constrained_pendulum_gains_no_energy() {
     }
 }
 
-/// A four-bar linkage with 26.8 J keeps its energy; it once gained 0.19 J in 4 s and 45 J in 12 s.
+/// A four-bar linkage with 26.8 J keeps its energy; regression test: it gained 0.19 J in 4 s and 45 J in 12
+/// s.
 #[test]
 fn four_bar_linkage_conserves_energy() {
     let start = MechanismWithStart::assemble_near_guess(&FourBar {}, [1.2, -1.0, 1.4], [2.0, 0.0, 0.0]);

@@ -177,7 +177,7 @@ fn state_cost_weights(phase: &GaitNode) -> [VelocityVector; 2] {
     }
 }
 
-/// Node of a trajectory to second order, with its working storage.
+/// Node of a trajectory: its step to first order and its cost to second order, with working storage.
 struct LinearisedTrajectoryNode {
     step: Transition,
     cost: TrotStepCost,

@@ -257,8 +257,8 @@ pub enum Record {
     MotionDerivatives(usize, usize),
     /// Forces of the inputs and their derivatives. Sizes: velocities, inputs.
     InputDerivatives(usize, usize),
-    /// Derivatives of contact forces and accelerations, at given generalized accelerations and contact
-    /// forces. Sizes: velocities, contact velocities.
+    /// Derivatives of the generalized forces `Gᵀ f` of given contact forces, of the contact accelerations `G
+    /// a + b` at given accelerations, and of the contact velocities. Sizes: velocities, contact velocities.
     ContactDerivatives(usize, usize),
     /// Second derivatives of the constraint terms of the equations, contracted with given factors. Sizes:
     /// velocities, constraints.

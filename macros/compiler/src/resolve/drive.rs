@@ -58,7 +58,8 @@ pub fn drive_quantities<'g>(
     }
 }
 
-/// Returns the length or wrench on which an element acts.
+/// Returns the length on which an element acts, with its rate; for a wrench the conjugate rate, and zero for
+/// the length.
 fn length_or_wrench_of_drive<'g>(
     scope: &Scope<'_, 'g>,
     on: &FileForceTarget,

@@ -181,8 +181,9 @@ fn write_composed_forward_derivatives(
     write_program(body, &f.program, scope, &place);
 }
 
-/// Returns the array element for an output: derivatives with respect to inputs, then the block for
-/// displacements.
+/// Returns the element of a system matrix to which an output of the program is written. The first outputs are
+/// the derivatives of the accelerations with respect to the inputs, in one array; the others are the
+/// derivatives of the rates of displacements with respect to displacements, in another.
 fn system_matrix_element(n: usize, m: usize, k: usize) -> String {
     match k < n * m {
         true => format!("by_input[{}]", k / n * 2 * n + n + k % n),

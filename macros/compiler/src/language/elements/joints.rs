@@ -38,9 +38,9 @@ pub enum JointTypeCoordinates {
 /// The axis that the drawing of a joint shows.
 #[derive(Clone, Copy, Debug)]
 pub enum DrawnAxis {
-    /// First rotation axis of the joint.
+    /// The drawing shows the first rotation axis of the joint.
     About,
-    /// First translation axis of the joint.
+    /// The drawing shows the first translation axis of the joint.
     Along,
 }
 

@@ -38,7 +38,7 @@ impl WrittenArguments {
 pub struct FileForceElement {
     /// Name of the element; for an input, its entry in `INPUTS`.
     pub name: Name,
-    /// Coordinates, length or point on which the element of a file acts.
+    /// Sum of coordinates, length or wrench on which the element of a file acts.
     pub on: FileForceTarget,
     /// Force law of the element.
     pub law: FileForceLaw,
@@ -52,7 +52,8 @@ pub enum FileForceTarget {
     Sum(Vec<(Name, f64)>),
     /// Length that depends on the coordinates, such as that of a cable.
     Length(Expr),
-    /// Rate on which a force at a point and a torque do work; its value is zero.
+    /// Force at a point and a torque. Their power per unit of the drive takes the place of the rate of a
+    /// length; the length itself counts as zero.
     Wrench(Wrench),
 }
 
