@@ -191,9 +191,9 @@ fn scene_of_samples(samples: &[Sample<f64, 2, 2, 1>], caught: f64) -> Scene {
         still: 4.6,
         captions: vec![
             (0, "pumping energy".into()),
-            (sample_index(caught), "caught: regulator holds".into()),
-            (sample_index(SHOVE.start), format!("shoved with {SHOVING} N")),
-            (sample_index(SHOVE.end) + 20, "regulator holds".into()),
+            (sample_index_at_time(caught), "caught: regulator holds".into()),
+            (sample_index_at_time(SHOVE.start), format!("shoved with {SHOVING} N")),
+            (sample_index_at_time(SHOVE.end) + 20, "regulator holds".into()),
         ],
         guides: Vec::new(),
         trail: Some((1, 40)),

@@ -246,8 +246,8 @@ fn scene_of_samples(samples: &[QuadrupedSample]) -> Scene {
         still: 0.75,
         captions: vec![
             (0, "take-off".into()),
-            (sample_index(TUCKING[0]), "tucking: spins faster".into()),
-            (sample_index(OPENING[0]), "opening: spins slower".into()),
+            (sample_index_at_flight_fraction(TUCKING[0]), "tucking: spins faster".into()),
+            (sample_index_at_flight_fraction(OPENING[0]), "opening: spins slower".into()),
         ],
         guides: vec![(0..=60).map(free_fall_position).collect()],
         trail: Some((28, 400)),

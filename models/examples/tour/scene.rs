@@ -99,8 +99,8 @@ impl Scene {
             "\"parts\":[{}],\"captions\":[{}],\"guides\":[{}],\"frames\":[{}]}}",
             parts.join(","),
             captions.join(","),
-            join_point_lists(&self.guides),
-            join_point_lists(&self.frames)
+            point_lists_json(&self.guides),
+            point_lists_json(&self.frames)
         );
         out
     }
