@@ -222,7 +222,7 @@ struct PandaWithWristParameters;
     regressor, scalar = f32, parameters = inertial("panda_link7")
 )]
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct SinglePrecisionWristParameters;
+struct SinglePrecisionPandaWithWristParameters;
 
 /// Returns other inertial parameters of a physically consistent body: part of the known body's density, and
 /// two point masses.
@@ -344,7 +344,7 @@ macro_rules! one_link {
 #[test]
 fn base_parameters_of_a_load_are_written_to_one_link() {
     one_link!(PandaWithWristParameters, f64, 1e-6);
-    one_link!(SinglePrecisionWristParameters, f32, 2e-2);
+    one_link!(SinglePrecisionPandaWithWristParameters, f32, 2e-2);
 }
 
 /// Frames of links whose placement is a parameter are at the placement that the parameter states.

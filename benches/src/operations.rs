@@ -20,9 +20,7 @@ pub struct FunctionOperationCounts {
 }
 
 impl FunctionOperationCounts {
-    fn total_operation_counts<'a>(
-        programs: impl IntoIterator<Item = &'a Program>,
-    ) -> FunctionOperationCounts {
+    fn sum_over_programs<'a>(programs: impl IntoIterator<Item = &'a Program>) -> FunctionOperationCounts {
         let mut size = FunctionOperationCounts::default();
         for program in programs {
             size.operations += program.counts.total_operations();
@@ -61,7 +59,7 @@ impl CompiledMechanism {
     /// Returns the numbers of operations of a generated function; zero if it does not exist.
     pub fn operation_counts_of_function(&self, name: &str) -> FunctionOperationCounts {
         let found = self.output.functions.iter().filter(|f| f.name == name);
-        FunctionOperationCounts::total_operation_counts(found.map(|f| &f.program))
+        FunctionOperationCounts::sum_over_programs(found.map(|f| &f.program))
     }
 
     /// Returns the numbers of operations of a frame's Jacobian: the steps along the path to its link.
@@ -74,6 +72,6 @@ impl CompiledMechanism {
             programs.extend([&link.placement, &link.columns]);
             at = link.parent;
         }
-        FunctionOperationCounts::total_operation_counts(programs)
+        FunctionOperationCounts::sum_over_programs(programs)
     }
 }

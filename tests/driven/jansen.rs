@@ -72,7 +72,7 @@ fn ground_coordinates_of_body_point(a: Point, b: Point, x: f64, y: f64) -> Point
 /// Bars with their masses, centres of mass, moments of inertia and ends.
 struct LegBars(Vec<(f64, Point, f64, [Point; 2])>);
 
-/// Returns the corners of the leg by intersections of circles.
+/// Returns the bars of the leg at an angle of the crank. Their joints are intersections of circles.
 fn bars_at_crank_angle(angle: f64) -> LegBars {
     let (pivot, centre) = ([-0.38, -0.078], [0.0, 0.0]);
     let pin = [0.15 * angle.cos(), 0.15 * angle.sin()];

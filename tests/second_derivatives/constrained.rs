@@ -62,7 +62,7 @@ pub struct Marble {
 /// Double pendulum with point masses on a cart. Its tip stays at a constant distance from a driven peg, and
 /// the velocity of the elbow is a function of shoulder angle and cart velocity.
 #[mechanism(gravity = -9.81 * y, second_derivatives)]
-struct PendulumsTiedToDrivenPeg {
+struct DoublePendulumTiedToDrivenPeg {
     sway: f64,
     #[body(mass = 0.8)]
     cart: Body,
@@ -86,8 +86,8 @@ struct PendulumsTiedToDrivenPeg {
     push: Force,
 }
 
-/// Returns the accelerations of `Driven` by Lagrange's equations with multipliers; `x` has configuration,
-/// velocity and forces.
+/// Returns the accelerations of `DoublePendulumTiedToDrivenPeg` by Lagrange's equations with multipliers; `x`
+/// has configuration, velocity and forces.
 fn constrained_accelerations(sway: f64, t: f64, x: &[HyperDual; 9]) -> [HyperDual; 3] {
     let ([_, q1, q2, v0, v1, v2, ..], number) = (*x, HyperDual::constant_hyper);
     let (masses, reach, gravity) =
@@ -153,7 +153,7 @@ fn acceleration_hessian(
 
 #[test]
 fn hand_derived_equations_have_the_generated_second_derivatives() {
-    let (m, t) = (PendulumsTiedToDrivenPeg { sway: 2.0 }, 0.4);
+    let (m, t) = (DoublePendulumTiedToDrivenPeg { sway: 2.0 }, 0.4);
     for seed in 0..8 {
         let mut random = Random::new(seed);
         let (q, v) = (random.random_vector::<3>(1.2), random.random_vector::<3>(2.0));
@@ -186,7 +186,7 @@ fn constrained_second_derivatives_agree_with_differences() {
     check_second_derivatives("four-bar linkage", &FourBar {}, 2.0);
     check_second_derivatives("tied bodies", &TiedFlyingBody {}, 3.0);
     check_second_derivatives("marble", &Marble {}, 1.0);
-    check_second_derivatives("driven", &PendulumsTiedToDrivenPeg { sway: 2.0 }, 1.0);
+    check_second_derivatives("driven", &DoublePendulumTiedToDrivenPeg { sway: 2.0 }, 1.0);
 }
 
 #[test]
@@ -205,7 +205,7 @@ fn constrained_step_second_derivatives_agree_with_differences() {
         v.add_scalar(0.3),
     );
 
-    let m = PendulumsTiedToDrivenPeg { sway: 2.0 };
+    let m = DoublePendulumTiedToDrivenPeg { sway: 2.0 };
     let q = m.assemble(0.3, &[0.2, 0.4, 0.5].into(), &[0]).expect("it can be assembled");
     let v = m.project_velocity(0.3, &q, &[0.7, 0.3, 0.0].into()).expect("it moves");
     check_second_derivatives_of_steps("driven", &m, &Rk4::step(0.02), 1.0, q, v);

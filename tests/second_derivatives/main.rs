@@ -17,10 +17,10 @@ use std::path::Path;
 use support::differences;
 use support::random::Random;
 
-/// Flying body with rotors, two of which also exert a drag torque, and a pendulum on a ball joint below.
-/// Forces act along lines that the motion moves.
+/// Flying body with a load on a ball joint below, and a spring between them. Forces and a torque act along
+/// lines that the motion moves.
 #[mechanism(gravity = -9.81 * z, second_derivatives)]
-struct FlyingBodyWithRotors {
+struct FlyingBodyWithLoad {
     #[body(mass = 1.2, com = 0.02 * z, inertia = diagonal(0.01, 0.012, 0.02))]
     frame: Body,
     #[body(mass = 0.3, com = -0.4 * z + 0.05 * x, inertia = diagonal(0.004, 0.005, 0.001))]
@@ -219,7 +219,7 @@ impl<const N: usize, const NV: usize> ConcatMatrixEntries for [SMatrix<f64, NV, 
 #[test]
 fn second_derivatives_agree_with_differences() {
     check_second_derivatives("driven", &DoublePendulumOnDrivenPivot { rate: 3.0 }, 1.0);
-    check_second_derivatives("carrier", &FlyingBodyWithRotors {}, 3.0);
+    check_second_derivatives("carrier", &FlyingBodyWithLoad {}, 3.0);
     check_second_derivatives("arm", &Panda, 5.0);
     check_second_derivatives("quadruped", &Solo, 5.0);
 }

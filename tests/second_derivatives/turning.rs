@@ -3,7 +3,7 @@
 //! the start and at the end.
 
 use super::constrained::{Marble, TiedFlyingBody};
-use super::{FlyingBodyWithRotors, Solo};
+use super::{FlyingBodyWithLoad, Solo};
 use linkwork::prelude::*;
 use linkwork::{SecondDerivatives, discrete};
 use support::random::Random;
@@ -64,7 +64,7 @@ fn check_second_derivative_quadratic_forms<M, S, const NQ: usize, const NV: usiz
 #[test]
 fn rotating_body_step_second_derivatives_agree_with_differences() {
     let mut random = Random::new(3);
-    let m = FlyingBodyWithRotors {};
+    let m = FlyingBodyWithLoad {};
     let q = m.integrate(&m.neutral(), &random.random_vector(1.2));
     // Fast rotations, so that displacements rotate considerably within a step.
     let v = random.random_vector(4.0);

@@ -45,7 +45,7 @@ pub fn dispatch_in_any_build<const K: usize, T: Real, M: Evaluate<K, Arguments>,
     if crate::lanes::x86::avx2::speeds_up_scalar_type::<T>() && crate::lanes::x86::avx2::is_available() {
         #[expect(unsafe_code, reason = "calls of functions with target features are")]
         // SAFETY: the processor has the features.
-        return unsafe { evaluate_with_avx2(mechanism, arguments) };
+        return unsafe { with_avx2(mechanism, arguments) };
     }
     mechanism.evaluate::<Compiled>(arguments)
 }
@@ -56,7 +56,7 @@ pub fn dispatch_in_any_build<const K: usize, T: Real, M: Evaluate<K, Arguments>,
     not(all(target_feature = "avx2", target_feature = "fma"))
 ))]
 #[target_feature(enable = "avx2,fma")]
-fn evaluate_with_avx2<const K: usize, M: Evaluate<K, Arguments>, Arguments>(
+fn with_avx2<const K: usize, M: Evaluate<K, Arguments>, Arguments>(
     mechanism: &M,
     arguments: Arguments,
 ) -> M::Output {

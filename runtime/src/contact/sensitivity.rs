@@ -359,8 +359,8 @@ where
         DerivativesAtConstantImpulses { velocities, velocities_by_u, rates }
     }
 
-    /// Returns [`derivatives_at_constant_impulses`](Self::direct_derivatives) for a displacement `v` instead
-    /// of a velocity: contact velocities of prescribed motions are left out.
+    /// Returns [`derivatives_at_constant_impulses`](Self::derivatives_at_constant_impulses) for a
+    /// displacement `v` instead of a velocity: contact velocities of prescribed motions are left out.
     fn derivatives_at_constant_displacement(
         &self,
         v: &SVector<T, NV>,

@@ -105,8 +105,8 @@ impl<'a, M, T: Real, const NQ: usize, const NV: usize, const NR: usize>
         move |k, row| all.as_ref().map_or_else(|| change(k, row), |all| entry_or_zero(all, row))
     }
 
-    /// Computes [`rate_change_function`](Self::rate_changes) from the contact Jacobian, which the first call
-    /// of the returned function evaluates.
+    /// Computes [`rate_change_function`](Self::rate_change_function) from the contact Jacobian, which the
+    /// first call of the returned function evaluates.
     fn rate_change_function_from_jacobian<const NU: usize, const NK: usize>(
         &self,
         change: &SVector<T, NV>,

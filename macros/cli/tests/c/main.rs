@@ -290,7 +290,11 @@ fn cuda_kernels_of_trees_agree_with_rust() {
     let m = MechanismWithReservedNames { int: 1.2, class: 0.3, r#type: 0.8, NAN: 4.0 };
     let mut case = case!("awkward", MechanismWithReservedNames, m, [1.2, 0.3, 0.8, 4.0], time(), of_trees);
     case.entries.extend(products!(MechanismWithReservedNames, m, case));
-    kernels::check_exported_kernels(&case, "double", &["tests/mechanisms/mod.rs", "--struct", "Awkward"]);
+    kernels::check_exported_kernels(
+        &case,
+        "double",
+        &["tests/mechanisms/mod.rs", "--struct", "MechanismWithReservedNames"],
+    );
     let ([drag], [lift], [moment]) = wing_tables(true, true);
     let m = Wing { mass: 2.0, lift, drag, moment };
     let mut case = case!("wing", Wing, m, [2.0], time(), of_trees);
@@ -353,7 +357,7 @@ fn names_reserved_in_c_are_replaced() {
         entry!("inverse_dynamics_second_derivatives", "q, v, a, tau", qq, qv, vv, qa),
     ]);
     case.entries.extend(steps!(MechanismWithReservedNames, m, case));
-    check_exported_code(&case, &["tests/mechanisms/mod.rs", "--struct", "Awkward"]);
+    check_exported_code(&case, &["tests/mechanisms/mod.rs", "--struct", "MechanismWithReservedNames"]);
 }
 
 #[test]

@@ -1,8 +1,8 @@
 //! Catalogue of everything that can be generated for a mechanism, with one row per function: name, arguments,
 //! result, documentation, requirements, and whether it belongs to the trait. The rows determine which
 //! functions are generated, which are absent and why, which names are reserved, and the placeholders that are
-//! generated for a mechanism with an error. `derive` has the equations of each row by its [`Id`], without a
-//! default arm: a row without equations does not compile.
+//! generated for a mechanism with an error. `derive` has the equations of each row by its [`GeneratedId`],
+//! without a default arm: a row without equations does not compile.
 
 mod constants;
 mod constraints;

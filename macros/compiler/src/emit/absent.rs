@@ -71,7 +71,7 @@ const OF_FIGURES: [&str; 5] = ["from_file", "inertials", "set_base_parameters", 
 
 impl AbsentFunctions {
     /// Returns the functions and constants of frames, which a prepared mechanism lacks.
-    fn frame_items_prepared_struct_lacks() -> AbsentFunctions {
+    fn frame_items_absent_after_prepare() -> AbsentFunctions {
         AbsentFunctions {
             reason: "HasFrames",
             functions: OF_FRAMES.map(ToString::to_string).to_vec(),
@@ -80,7 +80,7 @@ impl AbsentFunctions {
     }
 
     /// Returns the functions and constants of parameters, which a prepared mechanism lacks.
-    fn parameter_functions_prepared_struct_lacks(facts: &Facts) -> AbsentFunctions {
+    fn parameter_functions_absent_after_prepare(facts: &Facts) -> AbsentFunctions {
         let rows = catalogue::function_catalogue_rows().filter(|row| row.first_unmet_need(facts).is_none());
         let functions = rows.filter(|row| OF_FIGURES.contains(&row.name)).map(|row| row.name.to_string());
         let constants = [("FILE", FunctionNeed::FileParameters), ("LINKS", FunctionNeed::FileInertials)];
@@ -102,10 +102,10 @@ pub fn write_missing_item_declarations(out: &mut String, i: &Interface<'_>, s: &
 }
 
 /// Writes declarations of everything that the prepared struct `name` lacks.
-pub fn write_items_prepared_struct_lacks(out: &mut String, name: &str, i: &Interface<'_>, s: &Signature<'_>) {
+pub fn write_items_absent_after_prepare(out: &mut String, name: &str, i: &Interface<'_>, s: &Signature<'_>) {
     for absent in i.absent.iter().chain([
-        &AbsentFunctions::frame_items_prepared_struct_lacks(),
-        &AbsentFunctions::parameter_functions_prepared_struct_lacks(&i.facts),
+        &AbsentFunctions::frame_items_absent_after_prepare(),
+        &AbsentFunctions::parameter_functions_absent_after_prepare(&i.facts),
     ]) {
         write_absent_declarations(out, name, absent, &ImplGenerics::new(i, s));
     }

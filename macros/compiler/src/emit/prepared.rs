@@ -1,7 +1,7 @@
 //! The struct that the option `prepare` adds. It stores the values that depend only on parameters, and has
 //! the functions of the mechanism, which compute the remainder.
 
-use super::absent::write_items_prepared_struct_lacks;
+use super::absent::write_items_absent_after_prepare;
 use super::constants::write_sizes_and_names;
 use super::dispatch::DispatchedBodies;
 use super::docs::operation_count_table;
@@ -68,7 +68,7 @@ pub fn write_prepared_struct_and_functions(
     lanes::write_methods(&mut methods, &mut bodies, i, functions, content.charts, s);
     write_impls(&head, out, &name, &methods, i, s);
     bodies.write_function_bodies(out, &name, &head);
-    write_items_prepared_struct_lacks(out, &name, i, s);
+    write_items_absent_after_prepare(out, &name, i, s);
     measurements::write_impls(out, &name, functions, i, s);
 
     let ImplGenerics { generics, arguments, bounds } = &head;

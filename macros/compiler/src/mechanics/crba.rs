@@ -54,7 +54,7 @@ impl<'g> MassMatrixVisitor<'_, 'g> {
 }
 
 impl<'g> RootPropagationVisitor<'g> for MassMatrixVisitor<'_, 'g> {
-    type Quantity = SpatialVector<'g>;
+    type Propagated = SpatialVector<'g>;
 
     fn initial_quantity_of_dof(&mut self, dof: usize) -> SpatialVector<'g> {
         let ((link, row), joints) = (self.dofs[dof], self.joints);

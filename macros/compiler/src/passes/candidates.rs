@@ -25,8 +25,8 @@ pub struct FrameChoiceData {
 }
 
 impl FrameChoiceData {
-    /// Returns the site of a link of a given size. With `free_parameters`, its mass properties need not be
-    /// numeric.
+    /// Returns the data for the choice of the frame of a link of a given size. With `free_parameters`, its
+    /// mass properties need not be numeric.
     pub fn from_link(link: &Link<'_>, size: f64, free_parameters: bool) -> FrameChoiceData {
         let (place, mass) =
             (NumericFrame::from_pose(&link.placement), NumericMassProperties::from_inertia(&link.inertia));

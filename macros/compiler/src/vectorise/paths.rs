@@ -15,11 +15,11 @@ pub trait PropagatedQuantity<'g>: Sized {
 /// Algorithm that processes quantities while they are propagated from degrees of freedom to the root.
 pub trait RootPropagationVisitor<'g> {
     /// Type of the quantity that is propagated from the links to the root.
-    type Quantity: PropagatedQuantity<'g>;
+    type Propagated: PropagatedQuantity<'g>;
     /// Returns the quantity that a degree of freedom propagates, in the frame of its own link.
-    fn initial_quantity_of_dof(&mut self, dof: usize) -> Self::Quantity;
+    fn initial_quantity_of_dof(&mut self, dof: usize) -> Self::Propagated;
     /// Processes a group of degrees of freedom that has been transformed to another link.
-    fn process_transformed_group(&mut self, group: &LaneGroup<Self::Quantity>);
+    fn process_transformed_group(&mut self, group: &LaneGroup<Self::Propagated>);
 }
 
 /// Propagated quantities of several degrees of freedom, as SIMD lanes.
@@ -119,7 +119,7 @@ impl<'a, 'g> PathsToRoot<'a, 'g> {
         &self,
         group: &[usize],
         visitor: &mut V,
-    ) -> LaneGroup<V::Quantity> {
+    ) -> LaneGroup<V::Propagated> {
         if let [dof] = *group {
             let link = self.links[dof];
             let (width, item) = (self.widths[link], visitor.initial_quantity_of_dof(dof));
@@ -144,10 +144,10 @@ impl<'a, 'g> PathsToRoot<'a, 'g> {
     /// Transforms a group link by link to a link nearer to the root, or to the root.
     fn transform_group_to_ancestor<V: RootPropagationVisitor<'g>>(
         &self,
-        mut group: LaneGroup<V::Quantity>,
+        mut group: LaneGroup<V::Propagated>,
         to: Option<usize>,
         visitor: &mut V,
-    ) -> LaneGroup<V::Quantity> {
+    ) -> LaneGroup<V::Propagated> {
         while Some(group.link) != to
             && let Some(parent) = self.joints[group.link].parent
         {

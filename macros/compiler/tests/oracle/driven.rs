@@ -19,7 +19,7 @@ const TOLERANCE: f64 = 1e-7;
 const REGULAR: f64 = 1e-2;
 const TIME: f64 = 0.4;
 
-/// Prescribed motion: the measure follows `c₀ + c₁ t + c₂ t²`, or its rate follows the rate of this
+/// Prescribed motion: the quantity follows `c₀ + c₁ t + c₂ t²`, or its rate follows the rate of this
 /// polynomial.
 struct PrescribedMotion {
     measure: PrescribedQuantity,

@@ -240,7 +240,7 @@ pub enum PrescribedQuantity {
     Way(AttachmentPoint, AttachmentPoint, usize),
 }
 
-/// Returns the value of a measure at a state, with its first and second rates.
+/// Returns a prescribed quantity at a state, with its first and second rates.
 pub fn series_of_prescribed_quantity(
     spec: &MechanismSpec,
     state: &State,

@@ -66,7 +66,7 @@ struct Writer<'a> {
     masks: usize,
     helpers: HelperLookup,
     registers: GeneralRegisterRoles,
-    /// Inputs whose addresses are in registers, in the order of [`Registers::pointers`].
+    /// Inputs whose addresses are in registers, in the order of [`GeneralRegisterRoles::pointers`].
     pointers: Vec<InputAddressInRegister>,
     /// Number of addresses of inputs that were used.
     uses: usize,

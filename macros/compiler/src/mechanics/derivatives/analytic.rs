@@ -104,7 +104,7 @@ struct ForceDerivativeVisitor<'a, 'g> {
 }
 
 impl<'g> RootPropagationVisitor<'g> for ForceDerivativeVisitor<'_, 'g> {
-    type Quantity = DofWrenchDerivatives<'g>;
+    type Propagated = DofWrenchDerivatives<'g>;
 
     fn initial_quantity_of_dof(&mut self, dof: usize) -> DofWrenchDerivatives<'g> {
         let (own, link) = (&self.all[dof], self.links[dof]);

@@ -313,7 +313,7 @@ struct HessianVisitor<'a, 'g> {
 }
 
 impl<'g> RootPropagationVisitor<'g> for HessianVisitor<'_, 'g> {
-    type Quantity = DofHessianContribution<'g>;
+    type Propagated = DofHessianContribution<'g>;
 
     fn initial_quantity_of_dof(&mut self, dof: usize) -> DofHessianContribution<'g> {
         let (own, sums) = (self.all[dof], &self.sums[self.links[dof]]);

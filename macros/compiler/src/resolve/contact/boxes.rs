@@ -193,9 +193,9 @@ impl<'g> BoxPair<'g> {
     fn face_of_largest_separation(&self) -> (SeparatingDirection<'g>, Expr<'g>) {
         let (zero, one) = (self.size.zero(), self.size.num(1.0));
         let [first, second] = [false, true].map(|is_second| self.best_separating_face(is_second));
-        let sum_of_half_lengths =
+        let half_sum_of_lengths =
             |block: &OrientedBox<'g>| block.half.into_iter().fold(zero, |sum, half| sum + half);
-        let size_difference = sum_of_half_lengths(&self.a) - sum_of_half_lengths(&self.b);
+        let size_difference = half_sum_of_lengths(&self.a) - half_sum_of_lengths(&self.b);
         let same = one - indicator_of_positive(absolute(size_difference) - self.size * TIE_TOLERANCE);
         let c = self.center_offset();
         let lower = -(c[0] * TIE_BREAK[0] + c[1] * TIE_BREAK[1] + c[2] * TIE_BREAK[2]);

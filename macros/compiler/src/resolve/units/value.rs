@@ -41,7 +41,7 @@ impl InferredUnit {
         InferredUnit::Quantity { dimension, anchor: UnitSource::Motion }
     }
 
-    /// Returns the value of the negated expression.
+    /// Returns the inferred unit of the negated expression.
     pub fn unit_of_negation(self) -> InferredUnit {
         match self {
             InferredUnit::Number(value) => InferredUnit::Number(-value),

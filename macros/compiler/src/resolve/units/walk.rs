@@ -10,7 +10,7 @@ use crate::language::{Builtin, Callable, UnitRule};
 use crate::syntax::{BinaryOp, Callee, Expr, ExprKind, Name};
 
 impl<'a> Inference<'a> {
-    /// Returns the value of an expression for the inference of units.
+    /// Returns the inferred unit of an expression.
     pub fn inferred_unit_of_expression(&mut self, e: &'a Expr) -> InferredUnit {
         match &e.kind {
             ExprKind::Number(n) => InferredUnit::Number(*n),
@@ -43,7 +43,7 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// Returns the value of a coordinate of a joint, or of an axis of a frame.
+    /// Returns the inferred unit of a coordinate of a joint, or of an axis of a frame.
     fn inferred_unit_of_member(&self, inner: &Expr, member: &Name) -> InferredUnit {
         let ExprKind::Name(joint) = &inner.kind else { return InferredUnit::Unknown };
         match self.names.get(&format!("{joint}.{}", member.text)) {
@@ -98,8 +98,8 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// Returns the value of a sum of any number of terms. If a term has a parameter or an input, terms of
-    /// unknown dimension get the expected dimension, so that an error is reported at the other term.
+    /// Returns the inferred unit of a sum of any number of terms. If a term has a parameter or an input,
+    /// terms of unknown dimension get the expected dimension, so that an error is reported at the other term.
     pub fn inferred_unit_of_sum(&mut self, e: &'a Expr, expected: Option<&Dimension>) -> InferredUnit {
         let mut written = Vec::new();
         let mut current = e;
@@ -146,8 +146,8 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// Returns the value of a product or quotient of any number of factors. Nested products in parentheses
-    /// are flattened: `a / (2 * b)` is `a / 2 / b`.
+    /// Returns the inferred unit of a product or quotient of any number of factors. Nested products in
+    /// parentheses are flattened: `a / (2 * b)` is `a / 2 / b`.
     fn inferred_unit_of_product(&mut self, e: &'a Expr) -> InferredUnit {
         let mut factors = Vec::new();
         let mut waiting = vec![(false, e)];
@@ -192,7 +192,7 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// Returns the value of a call: of a table, otherwise of a function of the language.
+    /// Returns the inferred unit of a call: of a table, otherwise of a function of the language.
     fn inferred_unit_of_call(&mut self, callee: &'a Callee, arguments: &'a [Expr]) -> InferredUnit {
         if let Some(unknown) = self.tables.get(&callee.text).cloned() {
             return self.inferred_unit_of_table(&unknown, arguments);
@@ -211,7 +211,7 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// Returns the value of a function of the language.
+    /// Returns the inferred unit of a function of the language.
     fn inferred_unit_of_language_function(
         &mut self,
         rule: &UnitRule,
@@ -344,7 +344,7 @@ impl<'a> Inference<'a> {
         e.as_name().is_some_and(|name| !is_value(name))
     }
 
-    /// Returns the value of a table. Its variables have the same units in all calls.
+    /// Returns the inferred unit of a table. Its variables have the same units in all calls.
     fn inferred_unit_of_table(
         &mut self,
         unknown: &[UnknownDimensionIndex],
@@ -365,8 +365,8 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// Returns the value of an elementary function: magnitudes and roots of any quantity, all others of plain
-    /// numbers.
+    /// Returns the inferred unit of an elementary function: magnitudes and roots of any quantity, all others
+    /// of plain numbers.
     fn inferred_unit_of_elementary_function(&mut self, f: Function, a: &'a Expr) -> InferredUnit {
         match f {
             Function::Abs => return self.inferred_unit_of_expression(a),
@@ -390,8 +390,8 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// Returns the value of a power. If the exponent is not a number, the dimension is unknown unless the
-    /// base is plain.
+    /// Returns the inferred unit of a power. If the exponent is not a number, the dimension is unknown unless
+    /// the base is plain.
     fn inferred_unit_of_power(&mut self, a: &'a Expr, n: &'a Expr) -> InferredUnit {
         let base = self.inferred_unit_of_expression(a);
         let exponent = self.equate_with_expected_dimension(n, &PLAIN, "1", DimensionEqualityReason::Argument);
