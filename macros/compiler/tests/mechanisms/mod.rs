@@ -1,7 +1,8 @@
 //! Test mechanisms that together have all generated functions.
 
 /// Test mechanisms: arguments of the attribute, name, and fields of the struct.
-pub const MECHANISMS: [(&str, &str, &str); 11] = [
+pub const MECHANISMS: [(&str, &str, &str); 12] = [
+    ("mjcf = \"../../tests/data/mjcf/free_bodies.xml\"", "Placed", ""),
     (
         "gravity = -9.81 * y, second_derivatives, momentum_derivatives, centroidal, hamilton, conserved, \
          regressor, sensitivities, packed, prepare, batch, drawing",
