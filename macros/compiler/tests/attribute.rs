@@ -24,12 +24,12 @@ fn conditional_struct_fields_are_rejected() {
                 each case";
     let used = "#[body(mass = m)] cart: Body, #[joint(ground -> cart, along = x)] rail: Sleeve,";
     for attribute in ["cfg(unix)", "cfg_attr(unix, unit(kg))", "cfg_attr(unix, cfg(test))"] {
-        let told = compiler_messages("", &format!("#[{attribute}] m: f64, {used}"));
-        assert_eq!(told, [format!("a parameter cannot be conditional\n\n{help}")], "{attribute}");
+        let messages = compiler_messages("", &format!("#[{attribute}] m: f64, {used}"));
+        assert_eq!(messages, [format!("a parameter cannot be conditional\n\n{help}")], "{attribute}");
     }
     assert_eq!(compiler_messages("", &format!("#[cfg_attr(unix, serde(skip))] m: f64, {used}")), NONE);
-    let told = compiler_messages("", &format!("#[cfg(unix)] {CART}"));
-    assert_eq!(told, [format!("an element cannot be conditional\n\n{help}")]);
+    let messages = compiler_messages("", &format!("#[cfg(unix)] {CART}"));
+    assert_eq!(messages, [format!("an element cannot be conditional\n\n{help}")]);
 }
 
 #[test]

@@ -92,7 +92,7 @@ impl Robot {
 
     /// Returns the configuration in the pose of the robot file: free bodies are where the file places them,
     /// and a joint with a `ref` has this coordinate. All other coordinates are those of
-    /// [`neutral`](Self::neutral).
+    /// [`neutral`](Self::neutral). `nq` entries, m and rad.
     ///
     /// # Errors
     ///

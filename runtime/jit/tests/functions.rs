@@ -343,6 +343,24 @@ fn robots_begin_in_the_pose_of_their_file() -> Result<(), Error> {
     // Simulations begin there, too.
     let start = moving.simulate().duration(0.0).finish()?;
     assert_eq!(start.q, q.as_slice());
+    // The free base of an SDF file has the pose that it has if it is fixed.
+    let file = std::env::temp_dir().join(format!("linkwork-pose-{}.sdf", std::process::id()));
+    let text = "<sdf version='1.9'><model name='m'><pose>.4 -.3 2 .1 -.7 2.6</pose><link name='base'><pose>\
+                .1 0 .2 0 0 .5</pose></link><link name='arm'><pose>0 .5 0 1 0 0</pose></link><joint \
+                name='hinge' type='revolute'><parent>base</parent><child>arm</child><axis><xyz>1 0 \
+                0</xyz></axis></joint>\
+                </model></sdf>";
+    std::fs::write(&file, text).expect("a temporary file");
+    let [free, fixed] =
+        ["free", "fixed"].map(|base| Loader::file(&file).options(&format!("base = {base}")).load());
+    std::fs::remove_file(&file).expect("the file is there");
+    let (free, fixed) = (free?, fixed?);
+    let q = free.initial_configuration()?;
+    for frame in ["base", "arm"] {
+        let there = fixed.frame_placement(frame, &[0.0])?;
+        let here = free.frame_placement(frame, q.as_slice())?;
+        assert!((there.to_homogeneous() - here.to_homogeneous()).amax() < 1e-14, "{frame}: {here} {there}");
+    }
     // A mechanism of another source begins in its neutral configuration.
     let cart = Loader::text(CART_POLE).load()?.with_parameters(&[
         ("cart_mass", 1.0),

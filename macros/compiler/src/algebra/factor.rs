@@ -84,10 +84,10 @@ fn append_rate_free_items(order: &PrintOrder, mut terms: Vec<Term>, items: &mut 
         terms.retain(|t| !all.iter().any(|s| s.monomial == t.monomial));
         items.push(square);
     }
-    let (alike, mut terms): (Vec<_>, Vec<_>) = group_terms_by_masked_factors(&terms, order.positions)
+    let (factored, mut terms): (Vec<_>, Vec<_>) = group_terms_by_masked_factors(&terms, order.positions)
         .into_iter()
         .partition(|(positions, group)| *positions != Monomial::ONE && group.len() > 1);
-    items.extend(alike.iter().map(|(_, group)| factored_item(order, group)));
+    items.extend(factored.iter().map(|(_, group)| factored_item(order, group)));
     let mut terms: Vec<Term> = terms.drain(..).flat_map(|(_, group)| group).collect();
     while let Some(first) = terms.first().copied() {
         let count_terms_with_atom =

@@ -32,7 +32,7 @@ pub const ROWS: &[Row] = &[
         shape: Shape::Vector(f.nq),
         docs: vec![
             "The configuration in the pose of the robot file: free bodies are where the file places them, \
-             and a joint with a `ref` has this coordinate. The other coordinates are zero.",
+             and a joint with a `ref` has this coordinate. The other coordinates are zero. m and rad.",
         ],
         ..Declaration::default()
     })

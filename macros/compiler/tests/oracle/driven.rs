@@ -206,12 +206,12 @@ fn compare_with_oracle(
         parse_source_and_import(parse_tokens(&arguments), parse_tokens(&item), Path::new(""), &mut cx);
     let compiled = source.as_ref().and_then(|source| compile(source, &graph, &mut cx));
     let Some((model, output)) = compiled else {
-        let told = cx.full_message_texts();
+        let messages = cx.full_message_texts();
         // Without sample configurations that satisfy the constraints, dependent speeds cannot be determined.
         assert!(
-            more.contains("speeds") && told.iter().all(|told| told.contains("do not determine")),
+            more.contains("speeds") && messages.iter().all(|message| message.contains("do not determine")),
             "seed {seed}{more}: {}\n{item}",
-            told.join("\n")
+            messages.join("\n")
         );
         return;
     };

@@ -44,7 +44,7 @@ pub enum ArgumentQuantity {
     Load,
 }
 
-const fn key_row_without_synonyms(name: &'static str, quantity: ArgumentQuantity) -> KeyRow {
+const fn key_row(name: &'static str, quantity: ArgumentQuantity) -> KeyRow {
     KeyRow { name, synonyms: "", quantity }
 }
 
@@ -52,63 +52,63 @@ table! {
     /// An argument of a force element, a contact, a limit or a pair of slipping surfaces.
     Key: KeyRow {
         /// Argument `stiffness`: stiffness of a spring.
-        Stiffness = key_row_without_synonyms("stiffness", Stiffness);
+        Stiffness = key_row("stiffness", Stiffness);
         /// Force, as an expression of the stretch or the speed.
-        Force = key_row_without_synonyms("force", Force);
+        Force = key_row("force", Force);
         /// Argument `energy`: energy as an expression of the stretch.
-        Energy = key_row_without_synonyms("energy", Energy);
+        Energy = key_row("energy", Energy);
         /// Length at which the force of a spring is zero.
-        FreeLength = key_row_without_synonyms("free_length", Coordinate);
+        FreeLength = key_row("free_length", Coordinate);
         /// Angle at which the torque of a spring is zero.
-        FreeAngle = key_row_without_synonyms("free_angle", Coordinate);
+        FreeAngle = key_row("free_angle", Coordinate);
         /// Argument `damping`: coefficient of a dashpot.
-        Damping = key_row_without_synonyms("damping", Damping);
+        Damping = key_row("damping", Damping);
         /// Argument `inertance`: inertance of an inerter.
-        Inertance = key_row_without_synonyms("inertance", Inertance);
+        Inertance = key_row("inertance", Inertance);
         /// Argument `coulomb`: force of sliding friction.
-        Coulomb = key_row_without_synonyms("coulomb", Force);
+        Coulomb = key_row("coulomb", Force);
         /// Argument `stiction`: force at breakaway.
-        Stiction = key_row_without_synonyms("stiction", Force);
+        Stiction = key_row("stiction", Force);
         /// Speed at which the force has fallen from breakaway to sliding.
-        StribeckSpeed = key_row_without_synonyms("stribeck_speed", Speed);
+        StribeckSpeed = key_row("stribeck_speed", Speed);
         /// Argument `viscous`: coefficient of viscous friction.
-        Viscous = key_row_without_synonyms("viscous", Damping);
+        Viscous = key_row("viscous", Damping);
         /// Argument `speed`: speed of the regularisation of friction.
-        Speed = key_row_without_synonyms("speed", Speed);
+        Speed = key_row("speed", Speed);
         /// Argument `constant`: gravitational constant, for two bodies with mass.
-        Constant = key_row_without_synonyms("constant", Fixed(GRAVITATION, ""));
+        Constant = key_row("constant", Fixed(GRAVITATION, ""));
         /// Argument `mu`: gravitational parameter of the attracting body.
-        Mu = key_row_without_synonyms("mu", Fixed(ATTRACTION, ""));
+        Mu = key_row("mu", Fixed(ATTRACTION, ""));
         /// Argument `strength`: force times the square of the distance.
-        Strength = key_row_without_synonyms("strength", Fixed(STRENGTH, ""));
+        Strength = key_row("strength", Fixed(STRENGTH, ""));
         /// Argument `friction`: coefficient of friction while surfaces slide.
-        Friction = key_row_without_synonyms("friction", PLAIN_NUMBER);
+        Friction = key_row("friction", PLAIN_NUMBER);
         /// Argument `stiction` of contacts: coefficient of friction at rest.
-        StaticFriction = key_row_without_synonyms("stiction", PLAIN_NUMBER);
+        StaticFriction = key_row("stiction", PLAIN_NUMBER);
         /// Maximum friction moment about the normal per unit normal force.
-        TorsionalFriction = key_row_without_synonyms("torsional", METERS);
+        TorsionalFriction = key_row("torsional", METERS);
         /// Maximum friction moment about the tangents per unit normal force.
-        RollingFriction = key_row_without_synonyms("rolling", METERS);
+        RollingFriction = key_row("rolling", METERS);
         /// Coefficient of restitution: `e`, a ratio of velocities, or `poisson(e)`, a ratio of impulses.
-        Restitution = key_row_without_synonyms("restitution", PLAIN_NUMBER);
+        Restitution = key_row("restitution", PLAIN_NUMBER);
         /// Argument `hertz`: stiffness of round bodies in contact (Hertz).
-        Hertz = key_row_without_synonyms("hertz", HertzStiffness);
+        Hertz = key_row("hertz", HertzStiffness);
         /// Argument `dissipation`: dissipation per speed of approach (Hunt and Crossley).
-        Dissipation = key_row_without_synonyms("dissipation", Fixed(SLOWNESS, "s/m"));
+        Dissipation = key_row("dissipation", Fixed(SLOWNESS, "s/m"));
         /// Argument `from`: lower bound of a limit.
-        From = key_row_without_synonyms("from", Coordinate);
+        From = key_row("from", Coordinate);
         /// Argument `to`: upper bound of a limit.
-        To = key_row_without_synonyms("to", Coordinate);
+        To = key_row("to", Coordinate);
         /// Argument `max_speed`: maximum speed of a coordinate in both directions.
-        MaxSpeed = key_row_without_synonyms("max_speed", Speed);
+        MaxSpeed = key_row("max_speed", Speed);
         /// Argument `max_effort`: maximum force or torque in both directions.
-        MaxEffort = key_row_without_synonyms("max_effort", Force);
+        MaxEffort = key_row("max_effort", Force);
         /// Argument `along`: direction of a force on a body.
-        Along = key_row_without_synonyms("along", Direction);
+        Along = key_row("along", Direction);
         /// Argument `about`: direction of a torque on a body.
-        About = key_row_without_synonyms("about", Direction);
+        About = key_row("about", Direction);
         /// Argument `value`: value of a force or a torque.
-        Value = key_row_without_synonyms("value", Load);
+        Value = key_row("value", Load);
     }
 }
 
