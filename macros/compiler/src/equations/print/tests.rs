@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::algebra::normal::NormalFormCache;
+use crate::expr::Expr;
 use crate::expr::{Function, Graph};
 
 /// Names of parameters, coordinates, rates and an input: `m k l`, `x y`, `x' y'`, `u`.

@@ -14,6 +14,7 @@ pub mod node;
 pub mod replace;
 pub mod rotation;
 pub mod sample;
+mod text;
 
 pub use graph::Graph;
 pub use handle::Expr;
