@@ -5,6 +5,7 @@ use crate::robot::Robot;
 use linkwork::simulate::Overlaps;
 
 mod driver;
+mod kinds;
 mod method;
 
 use driver::{Driver, Settings, SimulationVisitor, StateIndependentInputs};

@@ -1,14 +1,12 @@
 //! Execution of simulations of padded robots by the integration methods of the runtime.
 
+use super::kinds::{AdaptiveMethod, MethodWithoutContacts};
 use super::{Controller, Method, Sample};
 use crate::capacity::{ContactVisitor, Visitor};
 use crate::error::Error;
 use crate::padded::Padded;
 use crate::robot::Robot;
-use linkwork::integrate::{
-    self, DormandPrince, DormandPrince8, EventDriven, ImplicitMidpoint, Rk4, Rodas, Rosenbrock,
-    SemiImplicitEuler, TimeStepping,
-};
+use linkwork::integrate::{self, DormandPrince, EventDriven, Rodas, TimeStepping};
 use linkwork::nalgebra::SVector;
 use linkwork::simulate::Overlaps;
 use linkwork::{Mechanism, simulate};
@@ -58,30 +56,12 @@ impl Visitor for SimulationVisitor<'_, '_, '_, '_> {
     fn visit<const N: usize>(self, robot: &Padded<N, N, N, &Robot>) -> Self::Output {
         let driver = self.driver;
         let start = PaddedState::new(driver.settings.start, self.q, self.v);
-        match driver.settings.method {
-            Method::Automatic(e) => driver.integrate_with_stiffness_switch(robot, start, e),
-            Method::DormandPrince(e) => {
-                driver.integrate_with_method(robot, start, DormandPrince::new().tolerance(e, e))
-            }
-            Method::DormandPrince8(e) => {
-                driver.integrate_with_method(robot, start, DormandPrince8::new().tolerance(e, e))
-            }
-            Method::Rodas(e) => driver.integrate_with_method(robot, start, Rodas::new().tolerance(e, e)),
-            Method::Rk4(h) => driver.integrate_with_method(robot, start, Rk4::step(h)),
-            Method::ImplicitMidpoint(h) => {
-                driver.integrate_with_method(robot, start, ImplicitMidpoint::step(h))
-            }
-            Method::Rosenbrock(h) => driver.integrate_with_method(robot, start, Rosenbrock::step(h)),
-            Method::SemiImplicitEuler(h) => {
-                driver.integrate_with_method(robot, start, SemiImplicitEuler::step(h))
-            }
-            // Without contacts these methods are those between contacts.
-            Method::TimeStepping(h) | Method::TimeSteppingMidpoint(h) | Method::TimeSteppingLeapfrog(h) => {
-                driver.integrate_with_method(robot, start, Rk4::step(h))
-            }
-            Method::EventDriven(e) => {
-                driver.integrate_with_method(robot, start, DormandPrince8::new().tolerance(e, e))
-            }
+        if let Method::Automatic(tolerance) = driver.settings.method {
+            return driver.integrate_with_stiffness_switch(robot, start, tolerance);
+        }
+        match MethodWithoutContacts::new(driver.settings.method) {
+            MethodWithoutContacts::Adaptive(method) => driver.integrate_with_method(robot, start, method),
+            MethodWithoutContacts::FixedStep(method) => driver.integrate_with_method(robot, start, method),
         }
     }
 }
@@ -380,14 +360,15 @@ impl Driver<'_, '_, '_> {
         tolerance: f64,
     ) -> Result<(), Error> {
         let explicit = DormandPrince::new().tolerance(tolerance, tolerance);
-        let explicit = explicit.max_steps(MOST_STEPS).min_step(SHORTEST);
+        let explicit = AdaptiveMethod::DormandPrince(explicit.max_steps(MOST_STEPS).min_step(SHORTEST));
         let implicit = Rodas::new().tolerance(tolerance, tolerance);
         let mut budget = OBSERVED;
         self.integrate_sections(start, |driver, section| {
             let mut from = section.start;
             loop {
                 if driver.stiff_from.is_some() {
-                    return driver.integrate_section(m, section, from, implicit, &mut |_, _| true);
+                    let method = AdaptiveMethod::Rodas(implicit);
+                    return driver.integrate_section(m, section, from, method, &mut |_, _| true);
                 }
                 // The implicit method is tried on what the explicit one has done with the budget.
                 let (mut total, mut ended) = (0, true);
@@ -445,7 +426,7 @@ impl Driver<'_, '_, '_> {
             .start_at(from.t)
             .from(from.q, from.v)
             .duration(until - from.t)
-            .method(method.max_steps((most / 5).min(MOST_IMPLICIT_STEPS)))
+            .method(AdaptiveMethod::Rodas(method.max_steps((most / 5).min(MOST_IMPLICIT_STEPS))))
             .with_inputs(feed);
         run.finish().is_ok() && evaluations.get() <= most
     }
