@@ -54,7 +54,9 @@ macro_rules! method_kind {
                 dense: bool,
             ) -> Result<Step<f64, NQ, NV>, Error> {
                 match memory {
-                    $($memory::$method(method, memory) => method.advance(memory, system, start, until, dense),)*
+                    $($memory::$method(method, memory) => {
+                        method.advance(memory, system, start, until, dense)
+                    })*
                 }
             }
         }
