@@ -89,7 +89,7 @@ fn integrate_one_by_one<S: Lockstep<f64>>(method: S, steps: usize, states: &mut 
     for k in 0..count {
         let (q, v) = (state_column::<6>(&states.q, count, k), state_column::<6>(&states.v, count, k));
         let mut state = State { t: 0.5, q, v };
-        let mut memory = method.memory();
+        let mut memory = method.initial_memory();
         let inputs =
             ContinuousInputs(move |t, q: &SVector<f64, 6>, v: &SVector<f64, 6>| command_of_state(k, t, q, v));
         let mut system: System<'_, _, _, 6> = System::new(&Ur5, inputs);

@@ -172,7 +172,7 @@ pub trait Arithmetic: Registers {
     /// column. Fails to compile if there are fewer lanes or rows.
     #[cfg_attr(debug_assertions, inline)]
     #[cfg_attr(not(debug_assertions), inline(always))]
-    fn store_two_lanes<
+    fn store_two_lanes_in_column<
         const I: usize,
         const J: usize,
         const ROW: usize,
@@ -198,7 +198,7 @@ pub trait Arithmetic: Registers {
     /// fewer rows.
     #[cfg_attr(debug_assertions, inline)]
     #[cfg_attr(not(debug_assertions), inline(always))]
-    fn store_rows<const ROW: usize, T: Real, const N: usize, const R: usize>(
+    fn store_lanes_in_column<const ROW: usize, T: Real, const N: usize, const R: usize>(
         column: &mut [T; R],
         a: Vector<Self, T, N>,
     ) {
@@ -213,7 +213,7 @@ pub trait Arithmetic: Registers {
     /// more than eight lanes.
     #[cfg_attr(debug_assertions, inline)]
     #[cfg_attr(not(debug_assertions), inline(always))]
-    fn store_columns<
+    fn store_two_rows<
         const ROW: usize,
         const COLUMN: usize,
         T: Real,

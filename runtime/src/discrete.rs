@@ -107,7 +107,7 @@ where
 {
     // Time is counted from the start of the step, so that the length of the step is not rounded.
     let start = State { t: T::zero(), q: *q, v: *v };
-    let mut memory = method.memory();
+    let mut memory = method.initial_memory();
     if NU == 0 {
         return System::new(mechanism, NoInputs).advance_step(method, &mut memory, t, &start, None, false);
     }

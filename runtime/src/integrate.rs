@@ -125,7 +125,7 @@ pub trait Method<T: Real> {
     fn check(&self) -> Result<(), Error>;
 
     /// Returns the memory at the start of a run.
-    fn memory<const NV: usize>(&self) -> Self::Memory<NV>;
+    fn initial_memory<const NV: usize>(&self) -> Self::Memory<NV>;
 
     /// Returns the largest violation of the contact conditions since the last call, as a contact velocity,
     /// and forgets it; zero for methods that satisfy them or end with an error.
@@ -134,7 +134,7 @@ pub trait Method<T: Real> {
     }
 
     /// Discards the memory that a jump of the inputs or the state invalidates.
-    fn disturb<const NV: usize>(&self, memory: &mut Self::Memory<NV>, jump: Jump);
+    fn discard_memory_after_jump<const NV: usize>(&self, memory: &mut Self::Memory<NV>, jump: Jump);
 
     /// Advances one step from `start`, not beyond `until`; a step that reaches `until` ends exactly there.
     /// With `dense` the [`Step`] interpolates to the method's order (or order 3), otherwise possibly only

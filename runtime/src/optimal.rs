@@ -487,21 +487,21 @@ fn rewrite_cost_to_go_variables<T: Real, const NQ: usize, const NV: usize>(
     }
     let [e, d] = chain.nearly_identity_matrices();
     let mut moved = after.qq;
-    d.follow(&mut moved);
+    d.right_multiply(&mut moved);
     write_scaled_sum(&after.qv, h, &moved, z);
     write_scaled_sum(&after.qv, h * constant(0.5), &moved, &mut half);
     let (mut of_d, mut of_e) = (zeros(), zeros());
     let (back_by_d, back_by_e) = (d.transposed(&mut of_d), e.transposed(&mut of_e));
-    back_by_d.lead(&mut half);
+    back_by_d.left_multiply(&mut half);
     add_with_transpose(w, h, &half);
-    back_by_e.lead(z);
+    back_by_e.left_multiply(z);
     moved = after.qq;
-    e.follow(&mut moved);
-    back_by_e.lead(&mut moved);
+    e.right_multiply(&mut moved);
+    back_by_e.left_multiply(&mut moved);
     add_multiple(qq, T::one(), &moved);
     let (mut of_q, mut of_dv) = (after.q, after.q);
-    back_by_e.lead(&mut of_q);
-    back_by_d.lead(&mut of_dv);
+    back_by_e.left_multiply(&mut of_q);
+    back_by_d.left_multiply(&mut of_dv);
     [of_q, after.v + of_dv * h]
 }
 

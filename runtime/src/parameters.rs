@@ -386,7 +386,7 @@ mod tests {
     }
 
     #[test]
-    fn inertia_message_states_missing_moment() {
+    fn inertia_error_states_violation_of_triangle_inequality() {
         // Rotated by 45° about z, then about x: principal moments 0.1, 0.2, 0.5.
         let (a, b) = (core::f64::consts::FRAC_1_SQRT_2, 0.5);
         let axes = [[a, a, 0.0], [-b, b, a], [b, -b, a]];

@@ -48,8 +48,9 @@ fn generated_code_of_chains_grows_linearly() {
     // The lanes of a vector are stored to a column, or to adjacent columns, by one call. Derivatives of longer
     // chains are computed in loops.
     let middle = generated_chain_code(11);
-    let each = middle.matches("Ops::store_two_lanes").count();
-    let together = middle.matches("Ops::store_rows").count() + middle.matches("Ops::store_columns").count();
+    let each = middle.matches("Ops::store_two_lanes_in_column").count();
+    let together =
+        middle.matches("Ops::store_lanes_in_column").count() + middle.matches("Ops::store_two_rows").count();
     assert!(together > 4 * each, "{each} pairs and {together} vectors are stored");
 }
 

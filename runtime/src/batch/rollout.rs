@@ -264,7 +264,7 @@ impl<M, const L: usize> Lanewise<'_, M, L> {
         let inputs = ContinuousInputs(|t, q: &SVector<_, NQ>, v: &SVector<_, NV>| control(first, t, q, v));
         let mut system: System<'_, Self, _, NU> = System::new(self, inputs);
         let method = rollout.method.in_lanes::<L>();
-        let mut memory = method.memory();
+        let mut memory = method.initial_memory();
         let mut group = FinishedGroup { end: start, failures: [None; L] };
         for _ in 0..rollout.steps {
             let begin = group.end;
@@ -311,7 +311,7 @@ impl<M, const L: usize> Lanewise<'_, M, L> {
                 lane(&control(first, Lanes::splat(t), &q.map(Lanes::splat), &v.map(Lanes::splat)), k)
             });
             let mut system: System<'_, M, _, NU> = System::new(self.mechanism, inputs);
-            let mut memory = rollout.method.memory();
+            let mut memory = rollout.method.initial_memory();
             let mut state = State { t: start.t.0[k], q: lane(&start.q, k), v: lane(&start.v, k) };
             for _ in 0..rollout.steps {
                 match system.advance_step(&rollout.method, &mut memory, nalgebra::zero(), &state, None, false)

@@ -59,7 +59,7 @@ impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
     }
 
     /// Replaces a matrix `A` by the product `A D` with this matrix `D`.
-    pub fn follow<const R: usize>(&self, a: &mut SMatrix<T, R, N>) {
+    pub fn right_multiply<const R: usize>(&self, a: &mut SMatrix<T, R, N>) {
         if self.end - self.first.min(self.end) > 8 {
             self.right_multiply_with_storage::<R, N>(a)
         } else {
@@ -87,7 +87,7 @@ impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
     }
 
     /// Replaces a matrix `A` by the product `D A` with this matrix `D`.
-    pub fn lead<const C: usize>(&self, a: &mut SMatrix<T, N, C>) {
+    pub fn left_multiply<const C: usize>(&self, a: &mut SMatrix<T, N, C>) {
         if self.first < self.end {
             dispatch::<0, T, _, _>(self, a);
         }
@@ -121,7 +121,8 @@ impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
         (start, core::array::from_fn(|k| (self.first..self.end).contains(&(start + k))))
     }
 
-    /// Replaces one column `x` by `D x` with this matrix `D`, as a step of [`lead`](Self::lead).
+    /// Replaces one column `x` by `D x` with this matrix `D`, as a step of
+    /// [`left_multiply`](Self::left_multiply).
     #[inline(always)]
     fn left_multiply_column<A: Arithmetic>(&self, column: &mut [T; N], start: usize, is_other: [bool; 8]) {
         let sum = self.eight_rows_of_product::<A>(column, start);

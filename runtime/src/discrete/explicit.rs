@@ -121,9 +121,9 @@ where
         let (by_q, by_dv) = self.mechanism.integrate_derivatives_at(self.q, &displacement.value);
         if let Some(rotating) = M::TURNED {
             let (turning, mut motion) = (NearlyIdentity::with_range(&by_dv, rotating), *displacement);
-            turning.lead(&mut motion.by_q);
-            turning.lead(&mut motion.by_v);
-            turning.lead(&mut motion.by_u);
+            turning.left_multiply(&mut motion.by_q);
+            turning.left_multiply(&mut motion.by_v);
+            turning.left_multiply(&mut motion.by_u);
             add_multiple(&mut motion.by_q, T::one(), &by_q);
             return (q, motion);
         }

@@ -67,9 +67,9 @@ impl<'a, M, const NV: usize> ConfigurationManifold<'a, M, NV> {
         of: &mut VectorWithDerivatives<T, NV, NU>,
     ) {
         let by = NearlyIdentity::with_range(by, self.rotating);
-        by.lead(&mut of.by_q);
-        by.lead(&mut of.by_v);
-        by.lead(&mut of.by_u);
+        by.left_multiply(&mut of.by_q);
+        by.left_multiply(&mut of.by_v);
+        by.left_multiply(&mut of.by_u);
     }
 
     /// Returns a configuration after a displacement, with the derivatives of its motion. Those of the
@@ -119,8 +119,8 @@ impl<'a, M, const NV: usize> ConfigurationManifold<'a, M, NV> {
         let (mut by_q, mut by_dv) = m.integrate_derivatives_at(q, &translation);
         let (rotated_by_q, rotated_by_dv) = m.integrate_derivatives_at(&translated, &rotation);
         let rotated = NearlyIdentity::with_range(&rotated_by_q, self.rotating);
-        rotated.lead(&mut by_q);
-        rotated.lead(&mut by_dv);
+        rotated.left_multiply(&mut by_q);
+        rotated.left_multiply(&mut by_dv);
         let columns = by_dv.data.0.iter_mut().zip(&rotated_by_dv.data.0).zip(&is_linear);
         for ((column, rotated), _) in columns.filter(|(_, is_linear)| **is_linear != T::one()) {
             *column = *rotated;
@@ -406,8 +406,8 @@ where
     let own = manifold.acceleration_without_axis_rotation(own, (start.t + half, &velocity.value));
     let mut acceleration =
         VectorWithDerivatives { value: own.value, by_q: own.by_q, by_v: own.by_q, by_u: own.by_u };
-    NearlyIdentity::with_range(&by_q, manifold.rotating).follow(&mut acceleration.by_q);
-    NearlyIdentity::with_range(&by_way, manifold.rotating).follow(&mut acceleration.by_v);
+    NearlyIdentity::with_range(&by_q, manifold.rotating).right_multiply(&mut acceleration.by_q);
+    NearlyIdentity::with_range(&by_way, manifold.rotating).right_multiply(&mut acceleration.by_v);
     scale(&mut acceleration.by_v, half);
     add_product(&mut acceleration.by_q, &own.by_v, &velocity.by_q);
     add_product(&mut acceleration.by_v, &own.by_v, &velocity.by_v);
@@ -431,8 +431,8 @@ where
     manifold.multiply_derivatives_from_left(&to_by_way, &mut motion);
     let [mut from_q, mut from_v] = [by_q, by_way];
     let to = NearlyIdentity::with_range(&to_by_q, manifold.rotating);
-    to.lead(&mut from_q);
-    to.lead(&mut from_v);
+    to.left_multiply(&mut from_q);
+    to.left_multiply(&mut from_v);
     add_multiple(&mut motion.by_q, T::one(), &from_q);
     add_multiple(&mut motion.by_v, half, &from_v);
     let (value, by_way) =

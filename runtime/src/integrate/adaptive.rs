@@ -204,11 +204,11 @@ macro_rules! adaptive {
                 self.settings.check()
             }
 
-            fn memory<const NV: usize>(&self) -> Self::Memory<NV> {
+            fn initial_memory<const NV: usize>(&self) -> Self::Memory<NV> {
                 AdaptiveMemory::new(self.settings.first)
             }
 
-            fn disturb<const NV: usize>(&self, memory: &mut Self::Memory<NV>, _jump: Jump) {
+            fn discard_memory_after_jump<const NV: usize>(&self, memory: &mut Self::Memory<NV>, _jump: Jump) {
                 memory.acceleration = None;
             }
 

@@ -137,7 +137,7 @@ impl<T: Real> Method<T> for EventDriven<T> {
         self.settings.check()
     }
 
-    fn memory<const NV: usize>(&self) -> Self::Memory<NV> {
+    fn initial_memory<const NV: usize>(&self) -> Self::Memory<NV> {
         EventMemory {
             adaptive: AdaptiveMemory::new(self.settings.first),
             short: 0,
@@ -147,7 +147,7 @@ impl<T: Real> Method<T> for EventDriven<T> {
         }
     }
 
-    fn disturb<const NV: usize>(&self, memory: &mut Self::Memory<NV>, _jump: Jump) {
+    fn discard_memory_after_jump<const NV: usize>(&self, memory: &mut Self::Memory<NV>, _jump: Jump) {
         memory.adaptive.acceleration = None;
     }
 
@@ -242,7 +242,7 @@ where
                 System::new(mechanism, ContinuousInputs(|t, q: &_, v: &_| inputs.evaluate(t, q, v)));
             let mut local = TimeShiftedSystem { system: &mut system, origin };
             TimeStepping::step(h).advance(
-                &mut TimeStepping::step(h).memory(),
+                &mut TimeStepping::step(h).initial_memory(),
                 &mut local,
                 &begin,
                 Some(until),

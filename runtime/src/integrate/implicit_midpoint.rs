@@ -115,13 +115,13 @@ impl<T: Real> Method<T> for ImplicitMidpoint<T> {
         check_positive("the step", self.step)
     }
 
-    fn memory<const NV: usize>(&self) -> Self::Memory<NV> {
+    fn initial_memory<const NV: usize>(&self) -> Self::Memory<NV> {
         MidpointMemory { momentum: None, change: SVector::zeros(), ended: PreviousEndSingularity::default() }
     }
 
-    fn disturb<const NV: usize>(&self, memory: &mut Self::Memory<NV>, jump: Jump) {
+    fn discard_memory_after_jump<const NV: usize>(&self, memory: &mut Self::Memory<NV>, jump: Jump) {
         if jump == Jump::State {
-            *memory = self.memory();
+            *memory = self.initial_memory();
         }
     }
 

@@ -109,11 +109,11 @@ impl<T: Real> Method<T> for Rodas<T> {
         self.settings.check()
     }
 
-    fn memory<const NV: usize>(&self) -> Self::Memory<NV> {
+    fn initial_memory<const NV: usize>(&self) -> Self::Memory<NV> {
         RodasMemory { steps: AdaptiveMemory::new(self.settings.first), slopes: None }
     }
 
-    fn disturb<const NV: usize>(&self, memory: &mut Self::Memory<NV>, jump: Jump) {
+    fn discard_memory_after_jump<const NV: usize>(&self, memory: &mut Self::Memory<NV>, jump: Jump) {
         memory.steps.acceleration = None;
         if jump == Jump::State {
             memory.slopes = None;

@@ -86,11 +86,11 @@ impl<T: Real> Method<T> for SemiImplicitEuler<T> {
         check_positive("the step", self.step)
     }
 
-    fn memory<const NV: usize>(&self) -> Self::Memory<NV> {
+    fn initial_memory<const NV: usize>(&self) -> Self::Memory<NV> {
         PreviousEndSingularity::default()
     }
 
-    fn disturb<const NV: usize>(&self, memory: &mut Self::Memory<NV>, jump: Jump) {
+    fn discard_memory_after_jump<const NV: usize>(&self, memory: &mut Self::Memory<NV>, jump: Jump) {
         if jump == Jump::State {
             *memory = PreviousEndSingularity::default();
         }

@@ -221,7 +221,7 @@ impl<T: Real> Method<T> for TimeStepping<T> {
         check_positive("the step", self.step)
     }
 
-    fn memory<const NV: usize>(&self) -> Self::Memory<NV> {
+    fn initial_memory<const NV: usize>(&self) -> Self::Memory<NV> {
         ContactStepMemory::new(SVector::zeros())
     }
 
@@ -229,7 +229,7 @@ impl<T: Real> Method<T> for TimeStepping<T> {
         core::mem::replace(&mut memory.violation, T::zero())
     }
 
-    fn disturb<const NV: usize>(&self, memory: &mut Self::Memory<NV>, jump: Jump) {
+    fn discard_memory_after_jump<const NV: usize>(&self, memory: &mut Self::Memory<NV>, jump: Jump) {
         // A jump of the inputs changes the contribution of the contacts only by the motion it causes.
         memory.steady &= matches!(jump, Jump::Inputs);
         memory.acceleration = None;

@@ -235,7 +235,7 @@ fn check_lane_pair_stored_to_rows<
 ) {
     let (a, b) = (Lanes::<T, N>::from_fn(number), Lanes::<T, M>::from_fn(|k| number(100 + k)));
     let mut column = [T::zero(); 4];
-    A::store_two_lanes::<I, J, 1, T, N, M, 4>(&mut column, A::lanes(a.0), A::lanes(b.0));
+    A::store_two_lanes_in_column::<I, J, 1, T, N, M, 4>(&mut column, A::lanes(a.0), A::lanes(b.0));
     assert_eq!(column, [T::zero(), a[I], b[J], T::zero()], "lanes {I} of {N} and {J} of {M}");
 }
 

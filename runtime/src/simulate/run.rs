@@ -166,7 +166,7 @@ where
             elapsed: 0.0,
             ahead: (0.0, node.t),
             firing: None,
-            memory: self.method.memory(),
+            memory: self.method.initial_memory(),
             step: None,
             cursor: T::zero(),
             hit: None,
@@ -428,7 +428,7 @@ where
             if firing.jumped || firing.stopped {
                 (run.node, run.elapsed, run.step) = (firing.state, firing.elapsed, None);
                 (run.shown, run.stopped) = (true, firing.stopped);
-                self.method.disturb(&mut run.memory, Jump::State);
+                self.method.discard_memory_after_jump(&mut run.memory, Jump::State);
             }
             return Ok(None);
         };
@@ -471,7 +471,7 @@ where
         if run.clock.control_instant(run.control).is_some_and(|control| run.elapsed >= control) {
             run.control += 1;
             self.system.inputs.renew(t, &q, &v);
-            self.method.disturb(&mut run.memory, Jump::Inputs);
+            self.method.discard_memory_after_jump(&mut run.memory, Jump::Inputs);
         }
     }
 

@@ -412,7 +412,7 @@ impl Motion {
         let plots: Vec<String> = self.plots.iter().map(|plot| plot.plot_json(&shown, &mut stream)).collect();
         let count = self.inputs.iter().map(Vec::len).min().unwrap_or(0);
         let inputs = (0..count).map(|k| {
-            encode_curve_with_json_header("", shown.iter().map(|s| self.inputs[*s][k]), &mut stream)
+            append_curve_and_describe_as_json("", shown.iter().map(|s| self.inputs[*s][k]), &mut stream)
         });
         let inputs: Vec<String> = inputs.collect();
         let arrows =
@@ -471,7 +471,7 @@ impl PageArrow {
     fn arrow_json(&self, shown: &[usize], renumber: impl Fn(usize) -> usize, stream: &mut Stream) -> String {
         let frame = self.frame.map_or("-1".to_string(), |frame| renumber(frame).to_string());
         let curves: Vec<String> = (0..3)
-            .map(|k| encode_curve_with_json_header("", shown.iter().map(|s| self.values[*s][k]), stream))
+            .map(|k| append_curve_and_describe_as_json("", shown.iter().map(|s| self.values[*s][k]), stream))
             .collect();
         text::list([text::json(self.kind), frame, text::numbers(&self.point), text::list(curves)])
     }
@@ -480,7 +480,7 @@ impl PageArrow {
 impl PagePlot {
     fn plot_json(&self, shown: &[usize], stream: &mut Stream) -> String {
         let curves = self.curves.iter().map(|(name, values)| {
-            encode_curve_with_json_header(name, shown.iter().map(|k| values[*k]), stream)
+            append_curve_and_describe_as_json(name, shown.iter().map(|k| values[*k]), stream)
         });
         let curves = text::list(curves.collect::<Vec<_>>());
         text::list([text::json(&self.title), text::json(&self.unit), curves])
@@ -489,7 +489,7 @@ impl PagePlot {
 
 /// Appends a curve to the stream of encoded samples, and returns its name, lowest value and quantisation step
 /// as JSON. A curve without finite values has the step −1.
-fn encode_curve_with_json_header(
+fn append_curve_and_describe_as_json(
     name: &str,
     values: impl Iterator<Item = f64> + Clone,
     stream: &mut Stream,

@@ -5,7 +5,7 @@ use super::output::AssociatedConstant;
 use crate::expr::Expr;
 use crate::kinematics::{self, Joint};
 use crate::mechanics;
-use crate::mechanics::independence::{ColumnDependence, classify_columns};
+use crate::mechanics::independence::{ColumnLinearDependence, classify_columns};
 use crate::mechanics::regressor::{
     COUNT, NAMES, RegressorFrame, inertia_from_parameters, inertial_parameters, regressor_columns,
 };
@@ -133,7 +133,7 @@ fn derive_base_parameters<'g>(
     let parts = classify_columns(model, &columns);
     let mut values: Vec<Expr<'g>> = entries.iter().map(|(k, p)| left[*k][*p]).collect();
     for (k, part) in parts.iter().enumerate() {
-        if let ColumnDependence::Combined(list) = part {
+        if let ColumnLinearDependence::Combination(list) = part {
             let dependent = values[k];
             list.iter().for_each(|(i, factor)| values[*i] += dependent * *factor);
         }
@@ -145,7 +145,7 @@ fn derive_base_parameters<'g>(
     let alone: Vec<Vec<Expr<'g>>> = base.values.iter().map(|value| vec![*value]).collect();
     let parts = classify_columns(model, &alone);
     for (k, part) in parts.iter().enumerate() {
-        let ColumnDependence::Combined(list) = part else { continue };
+        let ColumnLinearDependence::Combination(list) = part else { continue };
         let dependent = base.columns[k].clone();
         for (i, factor) in list {
             for (entry, other) in base.columns[*i].iter_mut().zip(&dependent) {
@@ -159,14 +159,14 @@ fn derive_base_parameters<'g>(
 
 impl BaseParameters<'_> {
     /// Removes the inertial parameters that are combinations of other ones.
-    fn keep_independent_parameters(&mut self, parts: &[ColumnDependence]) {
+    fn keep_independent_parameters(&mut self, parts: &[ColumnLinearDependence]) {
         retain_independent_items(&mut self.entries, parts);
         retain_independent_items(&mut self.values, parts);
         retain_independent_items(&mut self.columns, parts);
     }
 }
 
-fn retain_independent_items<T>(list: &mut Vec<T>, parts: &[ColumnDependence]) {
+fn retain_independent_items<T>(list: &mut Vec<T>, parts: &[ColumnLinearDependence]) {
     let mut parts = parts.iter();
-    list.retain(|_| parts.next() == Some(&ColumnDependence::Own));
+    list.retain(|_| parts.next() == Some(&ColumnLinearDependence::Independent));
 }

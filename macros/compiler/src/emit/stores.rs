@@ -201,18 +201,28 @@ fn pair_store_statements(pairs: &[[StoredLane; 2]], widths: &[usize]) -> Vec<Sta
             && (one.lane, next.lane) == (0, 1)
             && 2 * length_of_run(2, 2, 0) == width
         {
-            (format!("Ops::store_rows::<{row}, _, _, _>(&mut {matrix}.data.0[{column}], t{a});"), width / 2)
+            (
+                format!(
+                    "Ops::store_lanes_in_column::<{row}, _, _, _>(&mut {matrix}.data.0[{column}], t{a});"
+                ),
+                width / 2,
+            )
         } else if (one.lane, next.lane) == (0, 0) && widths[b] == width && length_of_run(1, 0, 1) == width {
             (
                 format!(
-                    "Ops::store_columns::<{row}, {column}, _, _, _, _>(&mut {matrix}.data.0, t{a}, t{b});"
+                    "Ops::store_two_rows::<{row}, {column}, _, _, _, _>(&mut {matrix}.data.0, t{a}, t{b});"
                 ),
                 width,
             )
         } else {
             let lanes = format!("{}, {}", one.lane, next.lane);
             let column = format!("{matrix}.data.0[{column}]");
-            (format!("Ops::store_two_lanes::<{lanes}, {row}, _, _, _, _>(&mut {column}, t{a}, t{b});"), 1)
+            (
+                format!(
+                    "Ops::store_two_lanes_in_column::<{lanes}, {row}, _, _, _, _>(&mut {column}, t{a}, t{b});"
+                ),
+                1,
+            )
         };
         statements.push(store_statement(text, vec![a, b]));
         rest = &rest[taken..];

@@ -3,8 +3,8 @@
 use crate::hull::{Hull, MAX_VERTICES};
 use crate::syntax::contact::{MAX_CONTACT_POINTS, select_collisions};
 use crate::syntax::{
-    BodyOrInertiaMethod, Collision, Contact, Description, Expr, ExprKind, FileContactKind, Key, SurfaceId,
-    SurfaceSize,
+    BodyOrInertiaMethod, Collision, Contact, Description, Expr, ExprKind, FileContactKind, Key,
+    SurfaceFeatureCounts, SurfaceId,
 };
 
 /// Maximum number of names in a line of the documentation.
@@ -101,9 +101,9 @@ pub(super) fn contact_point_count(contact: &Contact, collisions: &[Collision]) -
     if contact.is_compliant() {
         return Some(0);
     }
-    let seconds = surface_sizes(&contact.second, collisions);
+    let seconds = vertex_and_corner_counts_of_surfaces(&contact.second, collisions);
     let mut points = 0;
-    for first in surface_sizes(&contact.first, collisions) {
+    for first in vertex_and_corner_counts_of_surfaces(&contact.first, collisions) {
         for second in &seconds {
             points += first.contact_point_count(second)?;
         }
@@ -112,22 +112,31 @@ pub(super) fn contact_point_count(contact: &Contact, collisions: &[Collision]) -
 }
 
 /// Returns the numbers of vertices and corners of the surfaces of one side of a contact.
-fn surface_sizes(surface: &Expr, collisions: &[Collision]) -> Vec<SurfaceSize> {
+fn vertex_and_corner_counts_of_surfaces(
+    surface: &Expr,
+    collisions: &[Collision],
+) -> Vec<SurfaceFeatureCounts> {
     if let Some(selected) = select_collisions(surface, collisions) {
         return selected
             .into_iter()
-            .map(|k| surface_size(Some(collisions[k].shape.surface()), &collisions[k].hull))
+            .map(|k| {
+                surface_vertex_and_corner_counts(Some(collisions[k].shape.surface()), &collisions[k].hull)
+            })
             .collect();
     }
-    let ExprKind::Method(_, member, arguments) = &surface.kind else { return vec![surface_size(None, &[])] };
-    let Some(BodyOrInertiaMethod::Surface(id)) = member.id else { return vec![surface_size(None, &[])] };
+    let ExprKind::Method(_, member, arguments) = &surface.kind else {
+        return vec![surface_vertex_and_corner_counts(None, &[])];
+    };
+    let Some(BodyOrInertiaMethod::Surface(id)) = member.id else {
+        return vec![surface_vertex_and_corner_counts(None, &[])];
+    };
     let points = match arguments.first().map(|points| &points.kind) {
         Some(ExprKind::Array(points)) if id == SurfaceId::Hull => points.as_slice(),
         _ => &[],
     };
     let vertices: Option<Vec<[f64; 3]>> = points.iter().map(constant_vector).collect();
-    let size = surface_size(Some(id), &vertices.unwrap_or_default());
-    vec![SurfaceSize { vertices: points.len(), ..size }]
+    let size = surface_vertex_and_corner_counts(Some(id), &vertices.unwrap_or_default());
+    vec![SurfaceFeatureCounts { vertices: points.len(), ..size }]
 }
 
 /// Returns the components of a vector that is written as three numbers.
@@ -139,12 +148,12 @@ fn constant_vector(e: &Expr) -> Option<[f64; 3]> {
 
 /// Returns the form of a surface with its numbers of vertices and of corners of the largest face; `vertices`
 /// are those of a hull.
-fn surface_size(id: Option<SurfaceId>, vertices: &[[f64; 3]]) -> SurfaceSize {
+fn surface_vertex_and_corner_counts(id: Option<SurfaceId>, vertices: &[[f64; 3]]) -> SurfaceFeatureCounts {
     let corners = match id {
         Some(SurfaceId::Cuboid) => 4,
         Some(SurfaceId::Hull) => Hull::new(vertices, MAX_VERTICES)
             .map_or(0, |hull| hull.faces.iter().map(|face| face.corner_indices().len()).fold(0, usize::max)),
         _ => 0,
     };
-    SurfaceSize { id, vertices: vertices.len(), corners }
+    SurfaceFeatureCounts { id, vertices: vertices.len(), corners }
 }

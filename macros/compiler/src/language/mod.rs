@@ -75,4 +75,4 @@ pub use methods::BodyOrInertiaMethod;
 pub use names::{Builtin, axis_index_of_name};
 pub use rotations::Rotation;
 pub use solids::Solid;
-pub use surfaces::{MAX_FACE_POINTS, SurfaceId, SurfaceSize};
+pub use surfaces::{MAX_FACE_POINTS, SurfaceFeatureCounts, SurfaceId};

@@ -111,7 +111,7 @@ pub const MAX_FACE_POINTS: usize = 12;
 /// Surface of a contact: its form, `None` for a point, and its numbers of vertices and of corners of the
 /// largest face, which are zero if it is not a polytope.
 #[derive(Clone, Copy, Debug)]
-pub struct SurfaceSize {
+pub struct SurfaceFeatureCounts {
     /// Form of the surface; `None` for a point.
     pub id: Option<SurfaceId>,
     /// Number of vertices of a hull.
@@ -120,14 +120,14 @@ pub struct SurfaceSize {
     pub corners: usize,
 }
 
-impl SurfaceSize {
+impl SurfaceFeatureCounts {
     /// Returns the number of contact points of two surfaces; `None` if their contact is not supported.
-    pub fn contact_point_count(&self, other: &SurfaceSize) -> Option<usize> {
+    pub fn contact_point_count(&self, other: &SurfaceFeatureCounts) -> Option<usize> {
         self.point_count_on(other).or_else(|| other.point_count_on(self))
     }
 
     /// Returns the number of contact points if the table lists this surface on the other one.
-    fn point_count_on(&self, other: &SurfaceSize) -> Option<usize> {
+    fn point_count_on(&self, other: &SurfaceFeatureCounts) -> Option<usize> {
         let below = other.id.filter(|below| below.row().contacts.contains(&self.id))?;
         let Some(above) = self.id else { return Some(1) };
         Some(match (above, below) {

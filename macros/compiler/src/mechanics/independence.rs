@@ -15,28 +15,29 @@ pub type ColumnCombination = Vec<(usize, f64)>;
 
 /// Result of the test of one column for linear independence.
 #[derive(Clone, Debug, PartialEq)]
-pub enum ColumnDependence {
+pub enum ColumnLinearDependence {
     /// Column that is linearly independent of its predecessors.
-    Own,
+    Independent,
     /// This combination of independent predecessors; empty if the column is zero.
-    Combined(ColumnCombination),
+    Combination(ColumnCombination),
 }
 
 /// Classifies columns of equal length. A column whose factors depend on the parameters counts as independent.
-pub fn classify_columns(model: &Model<'_>, columns: &[Vec<Expr<'_>>]) -> Vec<ColumnDependence> {
+pub fn classify_columns(model: &Model<'_>, columns: &[Vec<Expr<'_>>]) -> Vec<ColumnLinearDependence> {
     let one = test_column_independence(&sampled_column_values(model, columns, 0));
     if model.parameters.is_empty() {
         return one;
     }
     let other = test_column_independence(&sampled_column_values(model, columns, 1));
-    let agreeing_test_result = |(one, other): (ColumnDependence, ColumnDependence)| match (&one, &other) {
-        (ColumnDependence::Combined(a), ColumnDependence::Combined(b))
-            if !are_equal_linear_combinations(a, b) =>
-        {
-            ColumnDependence::Own
-        }
-        _ => one,
-    };
+    let agreeing_test_result =
+        |(one, other): (ColumnLinearDependence, ColumnLinearDependence)| match (&one, &other) {
+            (ColumnLinearDependence::Combination(a), ColumnLinearDependence::Combination(b))
+                if !are_equal_linear_combinations(a, b) =>
+            {
+                ColumnLinearDependence::Independent
+            }
+            _ => one,
+        };
     one.into_iter().zip(other).map(agreeing_test_result).collect()
 }
 
@@ -73,7 +74,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 /// Orthogonalises the columns one after another (Gram–Schmidt, applied twice against rounding errors), and
 /// returns which columns are independent.
-fn test_column_independence(columns: &[Vec<f64>]) -> Vec<ColumnDependence> {
+fn test_column_independence(columns: &[Vec<f64>]) -> Vec<ColumnLinearDependence> {
     let largest = columns.iter().map(|c| dot(c, c).sqrt()).fold(0.0, f64::max);
     // Orthonormal vectors, each with its combination of independent columns.
     let mut base: Vec<(Vec<f64>, ColumnCombination)> = Vec::new();
@@ -81,7 +82,7 @@ fn test_column_independence(columns: &[Vec<f64>]) -> Vec<ColumnDependence> {
     for (k, column) in columns.iter().enumerate() {
         let size = dot(column, column).sqrt();
         if size <= TOLERANCE * largest {
-            parts.push(ColumnDependence::Combined(Vec::new()));
+            parts.push(ColumnLinearDependence::Combination(Vec::new()));
             continue;
         }
         let mut rest = column.clone();
@@ -103,12 +104,12 @@ fn test_column_independence(columns: &[Vec<f64>]) -> Vec<ColumnDependence> {
                 (0..k).filter(|i| combination[*i] != 0.0).map(|i| (i, -combination[i] / left)).collect();
             of.push((k, 1.0 / left));
             base.push((rest.iter().map(|r| r / left).collect(), of));
-            parts.push(ColumnDependence::Own);
+            parts.push(ColumnLinearDependence::Independent);
         } else {
             let norm_of_column = |i: usize| dot(&columns[i], &columns[i]).sqrt();
             let is_significant_coefficient =
                 |i: &usize| (combination[*i] * norm_of_column(*i)).abs() > 1e-7 * size;
-            parts.push(ColumnDependence::Combined(
+            parts.push(ColumnLinearDependence::Combination(
                 (0..k).filter(is_significant_coefficient).map(|i| (i, combination[i])).collect(),
             ));
         }
@@ -118,7 +119,7 @@ fn test_column_independence(columns: &[Vec<f64>]) -> Vec<ColumnDependence> {
 
 #[cfg(test)]
 mod tests {
-    use super::{ColumnDependence, test_column_independence};
+    use super::{ColumnLinearDependence, test_column_independence};
 
     #[test]
     fn linear_combinations_are_detected() {
@@ -129,10 +130,14 @@ mod tests {
         let found = test_column_independence(&[a, zero, b, c, d]);
         assert_eq!(
             (&found[0], &found[2], &found[4]),
-            (&ColumnDependence::Own, &ColumnDependence::Own, &ColumnDependence::Own)
+            (
+                &ColumnLinearDependence::Independent,
+                &ColumnLinearDependence::Independent,
+                &ColumnLinearDependence::Independent
+            )
         );
-        assert_eq!(found[1], ColumnDependence::Combined(Vec::new()));
-        let ColumnDependence::Combined(list) = &found[3] else { panic!("{found:?}") };
+        assert_eq!(found[1], ColumnLinearDependence::Combination(Vec::new()));
+        let ColumnLinearDependence::Combination(list) = &found[3] else { panic!("{found:?}") };
         let [(0, x), (2, y)] = list[..] else { panic!("{list:?}") };
         assert!((x - 2.0).abs() < 1e-12 && (y + 0.5).abs() < 1e-12);
     }

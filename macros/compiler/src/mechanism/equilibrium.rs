@@ -19,12 +19,12 @@ pub struct Equilibrium<'g> {
     /// Values of all entries of `u` at the equilibrium.
     pub inputs: Vec<Expr<'g>>,
     /// Values of the first-order states at the equilibrium.
-    pub states: Vec<FirstOrderStateAtRest<'g>>,
+    pub states: Vec<FirstOrderStateAtEquilibrium<'g>>,
 }
 
 /// Value of a first-order state at an equilibrium.
 #[derive(Clone, Debug)]
-pub struct FirstOrderStateAtRest<'g> {
+pub struct FirstOrderStateAtEquilibrium<'g> {
     /// Index of the first-order state among the parameters.
     pub parameter: usize,
     /// Value of the state at the equilibrium.

@@ -15,12 +15,12 @@ pub type VelocityGradient<'g> = Vec<(usize, Expr<'g>)>;
 pub struct DerivativeCache(Rc<RefCell<GradientCache>>);
 
 /// Indices of velocities and derivatives with respect to them, for each expression.
-type GradientTable = BTreeMap<Id, Vec<(usize, Id)>>;
+type GradientsByExpression = BTreeMap<Id, Vec<(usize, Id)>>;
 
 #[derive(Debug, Default)]
 struct GradientCache {
-    of_energies: GradientTable,
-    by_velocities: GradientTable,
+    energy_forces: GradientsByExpression,
+    velocity_derivatives: GradientsByExpression,
     /// Configuration space for which the forces of energies were computed.
     charts: Vec<Chart>,
 }
@@ -35,10 +35,10 @@ impl DerivativeCache {
     ) -> VelocityGradient<'g> {
         let mut found = self.0.borrow_mut();
         if found.charts != charts {
-            found.of_energies.clear();
+            found.energy_forces.clear();
             found.charts = charts.to_vec();
         }
-        cached_or_computed(&mut found.of_energies, energy, find)
+        cached_or_computed(&mut found.energy_forces, energy, find)
     }
 
     /// Returns the cached derivatives of an expression with respect to the velocities, or computes them with
@@ -48,12 +48,12 @@ impl DerivativeCache {
         e: Expr<'g>,
         find: impl FnOnce() -> VelocityGradient<'g>,
     ) -> VelocityGradient<'g> {
-        cached_or_computed(&mut self.0.borrow_mut().by_velocities, e, find)
+        cached_or_computed(&mut self.0.borrow_mut().velocity_derivatives, e, find)
     }
 }
 
 fn cached_or_computed<'g>(
-    known: &mut GradientTable,
+    known: &mut GradientsByExpression,
     e: Expr<'g>,
     find: impl FnOnce() -> VelocityGradient<'g>,
 ) -> VelocityGradient<'g> {

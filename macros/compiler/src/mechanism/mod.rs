@@ -32,7 +32,7 @@ pub use drawing::{Piece, PieceShape, ShownObjectKind};
 pub use element::{
     AccelerationForce, CoulombFriction, Dashpot, Inertance, InputEffect, Load, Spring, SumOfLinkVectors,
 };
-pub use equilibrium::{DRY_FRICTION, Equilibrium, FirstOrderStateAtRest};
+pub use equilibrium::{DRY_FRICTION, Equilibrium, FirstOrderStateAtEquilibrium};
 pub use gradients::{DerivativeCache, VelocityGradient};
 pub use index::{InQ, InV};
 pub use inertia::Inertia;

@@ -3,7 +3,7 @@
 
 use crate::diag::Diagnostics;
 use crate::expr::Expr as Value;
-use crate::mechanism::{DRY_FRICTION, Equilibrium, FirstOrderStateAtRest, Model};
+use crate::mechanism::{DRY_FRICTION, Equilibrium, FirstOrderStateAtEquilibrium, Model};
 use crate::resolve::scope::{AllowedQuantities, Context, Scope};
 use crate::syntax::{self, Action, Expr, ForceKind, RATE_OF_STATE};
 use std::collections::BTreeSet;
@@ -55,7 +55,7 @@ fn resolve_equilibrium<'g>(
         place: declared.name.place.clone(),
         configuration: vec![g.zero(); model.nq()],
         inputs: vec![g.zero(); model.nu()],
-        states: first_order_equilibrium_states(scope, model),
+        states: first_order_states_at_zero(scope, model),
     };
     for chart in &model.charts {
         if let Some(first) = chart.first_quaternion_index() {
@@ -71,7 +71,7 @@ fn resolve_equilibrium<'g>(
                 .add_help("remove one of the two");
             continue;
         }
-        let Some(value) = value_at_rest(scope, model, variable, value, cx) else { continue };
+        let Some(value) = value_at_equilibrium(scope, model, variable, value, cx) else { continue };
         match variable {
             Variable::Coordinate(k) => found.configuration[k] = value,
             Variable::Input(k) => found.inputs[k] = value,
@@ -82,10 +82,10 @@ fn resolve_equilibrium<'g>(
 }
 
 /// Returns the states of first order with the value zero.
-fn first_order_equilibrium_states<'g>(
+fn first_order_states_at_zero<'g>(
     scope: &Scope<'_, 'g>,
     model: &Model<'g>,
-) -> Vec<FirstOrderStateAtRest<'g>> {
+) -> Vec<FirstOrderStateAtEquilibrium<'g>> {
     let g = scope.graph;
     let rate_of_state = |name: &str| {
         let rate = format!("{name}{RATE_OF_STATE}");
@@ -94,7 +94,7 @@ fn first_order_equilibrium_states<'g>(
     };
     let states = scope.description.states.iter();
     states
-        .map(|(name, parameter)| FirstOrderStateAtRest {
+        .map(|(name, parameter)| FirstOrderStateAtEquilibrium {
             parameter: *parameter,
             value: g.zero(),
             rate: rate_of_state(&name.text),
@@ -103,7 +103,7 @@ fn first_order_equilibrium_states<'g>(
 }
 
 /// Returns the value of a variable, an expression of the parameters.
-fn value_at_rest<'g>(
+fn value_at_equilibrium<'g>(
     scope: &Scope<'_, 'g>,
     model: &Model<'g>,
     variable: Variable,

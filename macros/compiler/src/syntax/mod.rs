@@ -31,7 +31,7 @@ mod table;
 pub mod words;
 
 pub use crate::language::{
-    BodyOrInertiaMethod, ElementKind, ForceKind, JointKind, Key, OtherKind, SurfaceId, SurfaceSize,
+    BodyOrInertiaMethod, ElementKind, ForceKind, JointKind, Key, OtherKind, SurfaceFeatureCounts, SurfaceId,
 };
 pub use attribute::parse_mechanism;
 pub use description::{

@@ -2,7 +2,7 @@
 
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
-use linkwork_compiler::language::{ArgumentKind, SurfaceId, SurfaceSize};
+use linkwork_compiler::language::{ArgumentKind, SurfaceFeatureCounts, SurfaceId};
 use linkwork_compiler::parse_source_and_import;
 use linkwork_compiler::resolve::build_model;
 use std::path::Path;
@@ -72,7 +72,7 @@ fn contact_points_of_surfaces_are_counted_in_advance() {
             Some(SurfaceId::Cuboid) => (0, 4),
             _ => (0, 0),
         };
-        SurfaceSize { id, vertices, corners }
+        SurfaceFeatureCounts { id, vertices, corners }
     };
     let mut wrong = Vec::new();
     for below in SurfaceId::ALL.iter().copied() {

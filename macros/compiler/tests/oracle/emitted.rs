@@ -377,12 +377,12 @@ impl InterpreterState {
                 self.assign_value(&call.args[0], &[*row], lane_of_vector(0, *i)?)?;
                 self.assign_value(&call.args[0], &[row + 1], lane_of_vector(1, *j)?)?;
             }
-            ("store_rows", [row]) => {
+            ("store_lanes_in_column", [row]) => {
                 for k in 0..lanes_in_vector(0) {
                     self.assign_value(&call.args[0], &[row + k], lane_of_vector(0, k)?)?;
                 }
             }
-            ("store_columns", [row, column]) => {
+            ("store_two_rows", [row, column]) => {
                 for k in 0..lanes_in_vector(0) {
                     self.assign_value(&call.args[0], &[column + k, *row], lane_of_vector(0, k)?)?;
                     self.assign_value(&call.args[0], &[column + k, row + 1], lane_of_vector(1, k)?)?;

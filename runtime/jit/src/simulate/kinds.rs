@@ -33,15 +33,17 @@ macro_rules! method_kind {
                 }
             }
 
-            fn memory<const NV: usize>(&self) -> Self::Memory<NV> {
+            fn initial_memory<const NV: usize>(&self) -> Self::Memory<NV> {
                 match self {
-                    $($kind::$method(method) => $memory::$method(*method, method.memory::<NV>()),)*
+                    $($kind::$method(method) => $memory::$method(*method, method.initial_memory::<NV>()),)*
                 }
             }
 
-            fn disturb<const NV: usize>(&self, memory: &mut Self::Memory<NV>, jump: Jump) {
+            fn discard_memory_after_jump<const NV: usize>(&self, memory: &mut Self::Memory<NV>, jump: Jump) {
                 match memory {
-                    $($memory::$method(method, memory) => method.disturb::<NV>(memory, jump),)*
+                    $($memory::$method(method, memory) => {
+                        method.discard_memory_after_jump::<NV>(memory, jump)
+                    })*
                 }
             }
 

@@ -108,7 +108,7 @@ impl<'a> MjcfReader<'a> {
             }
             is_supported
         });
-        self.left_out.extend(omit_distant_candidates(&mut candidates));
+        self.left_out.extend(keep_nearest_candidates_within_limit(&mut candidates));
         for one in candidates {
             let [first, second] = one.shapes;
             let text = match one.name {
@@ -411,7 +411,7 @@ fn read_pair_friction(element: &super::defaults::ElementWithDefaults<'_>, cx: &m
 
 /// Removes the most distant candidates of each kind beyond the maximum number of contact points, because each
 /// contact has a point. Returns a line of the documentation for each kind with removed candidates.
-fn omit_distant_candidates(candidates: &mut Vec<ContactCandidate>) -> Vec<String> {
+fn keep_nearest_candidates_within_limit(candidates: &mut Vec<ContactCandidate>) -> Vec<String> {
     let mut lines = Vec::new();
     for (kind, what) in [
         (FileContactKind::World, "contacts of bodies with distant shapes of the world"),

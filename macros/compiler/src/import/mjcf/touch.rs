@@ -5,7 +5,7 @@ use crate::diag::Place;
 use crate::import::context::Cx;
 use crate::import::pose::{NumericPose, Vector, matrix_times_vector};
 use crate::syntax::{
-    Contact, Expr, ExprKind, FileContact, Key, Name, Shape, SurfaceId, SurfaceSize, WrittenArguments,
+    Contact, Expr, ExprKind, FileContact, Key, Name, Shape, SurfaceFeatureCounts, SurfaceId, WrittenArguments,
 };
 use std::cmp::Ordering;
 
@@ -120,17 +120,19 @@ pub(super) fn friction_of_dimension(dimension: f64, friction: [f64; 3]) -> [f64;
 
 impl ContactGeometry {
     /// Returns the surface of the form, without the size of a mesh.
-    fn surface_size(&self) -> SurfaceSize {
+    fn surface_vertex_and_corner_counts(&self) -> SurfaceFeatureCounts {
         let id = match self {
             ContactGeometry::Plane(_) => SurfaceId::Plane,
             ContactGeometry::Solid { shape, .. } => shape.surface(),
         };
-        SurfaceSize { id: Some(id), vertices: 0, corners: 0 }
+        SurfaceFeatureCounts { id: Some(id), vertices: 0, corners: 0 }
     }
 
     /// Whether Linkwork supports the contact of two forms.
     pub(super) fn supports_contact_with(&self, other: &ContactGeometry) -> bool {
-        self.surface_size().contact_point_count(&other.surface_size()).is_some()
+        self.surface_vertex_and_corner_counts()
+            .contact_point_count(&other.surface_vertex_and_corner_counts())
+            .is_some()
     }
 
     /// Whether the form is a plane.
