@@ -158,6 +158,23 @@ impl<'a> ConvertedStruct<'a> {
         if !d.contacts.is_empty() {
             self.notes.push(format!("contacts, which `#[contact]` declares: {}", d.contacts.len()));
         }
+        let initial: Vec<String> = d
+            .joints
+            .iter()
+            .filter(|joint| !joint.initial.is_empty())
+            .map(|joint| {
+                let field = self.joints.field_name_or_original(&joint.name.text);
+                let values: Vec<String> = joint.initial.iter().map(ToString::to_string).collect();
+                format!("`{field}` {}", values.join(" "))
+            })
+            .collect();
+        if !initial.is_empty() {
+            self.notes.push(format!(
+                "initial coordinates of {} joints, which programs pass to `from` of a simulation: {}",
+                initial.len(),
+                initial.join(", ")
+            ));
+        }
         let mut options = vec![format!(
             "gravity = {}",
             d.gravity.as_ref().map_or("0 * z".to_string(), written::format_gravity)

@@ -356,6 +356,26 @@ fn changed_names_of_converted_elements_are_reported() {
     assert!(!stderr.contains("shoulder") && !code.contains("shoulder` is"), "{stderr}{code}");
 }
 
+/// Checks that the coordinates at which a file places its bodies are listed: structs have none, and their
+/// simulations begin in the neutral configuration.
+#[test]
+fn initial_coordinates_of_converted_files_are_listed() {
+    let file = write_test_file(
+        "placed.xml",
+        r#"<mujoco><worldbody><body pos="1 2 3"><freejoint name="float"/>
+        <geom type="sphere" size="0.1"/></body><body><joint name="hinge" type="hinge" ref="30"/>
+        <geom type="box" size="0.1 0.1 0.1" pos="0.5 0 0"/></body></worldbody></mujoco>"#,
+    );
+    let (code, stderr) = convert_file(&file, "contacts = ignore");
+    let angle = 30_f64.to_radians();
+    let expected = format!(
+        "initial coordinates of 2 joints, which programs pass to `from` of a simulation: \
+         `float` 1 2 3 0 0 0 1, `hinge` {angle}\n"
+    );
+    assert!(code.contains(&format!("/// - {expected}")), "{code}");
+    assert!(stderr.contains(&format!("linkwork: {expected}")), "{stderr}");
+}
+
 #[test]
 fn inconvertible_elements_are_reported() {
     let run_command_line = |arguments: &[&str]| {
