@@ -93,7 +93,8 @@ macro_rules! each_function {
     (methods, [$scalar:ty] $($how:tt)+) => {
         $crate::forward::write! { [$scalar] $($how)+;
             project(q: NQ, v: NV) -> Result<$crate::constraint::Projected<$scalar, NQ, NV>, $crate::ConstraintError>;
-            impulse(q: NQ, v: NV, h: scalar, p: NV) -> $crate::nalgebra::SVector<$scalar, NV>;
+            velocity_change_by_impulse(q: NQ, v: NV, h: scalar, p: NV)
+                -> $crate::nalgebra::SVector<$scalar, NV>;
             acceleration_derivatives(q: NQ, v: NV, u: NU) -> Option<$crate::ByMotion<$scalar, NV, NU>>;
         }
         $crate::forward::each_function!(contact_methods, [$scalar] $($how)+);

@@ -91,7 +91,14 @@ fn piston_of_a_loop_rebounds_from_a_stop() {
         assert!(m.constraint_rates(&q, &found.v).amax() < 1e-12);
         assert!((found.v[2] + e * 2.0).abs() < 1e-12, "{}", found.v);
         let unit = [0.0, 0.0, 1.0].into();
-        let weight = linkwork::integrate::Hooks::impulse(&m, 0.0, &q, &SVector::zeros(), 0.0, &unit)[2];
+        let weight = linkwork::integrate::Hooks::velocity_change_by_impulse(
+            &m,
+            0.0,
+            &q,
+            &SVector::zeros(),
+            0.0,
+            &unit,
+        )[2];
         let lost = m.kinetic_energy(&q, &v) - m.kinetic_energy(&q, &found.v);
         assert!((lost - 0.5 * (1.0 - e * e) * 4.0 / weight).abs() < 1e-12, "{lost}");
     }

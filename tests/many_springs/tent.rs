@@ -7,7 +7,7 @@ use linkwork::{Mechanism, at};
 use support::compare::{assert_close, assert_close_relative_to_largest};
 use support::random::Random;
 
-/// Four bars in a plane, with springs out of the plane and a drive in time.
+/// Planar four-bar linkage with springs whose ends lie outside its plane, and a torque that depends on time.
 #[mechanism(gravity = -9.81 * y)]
 struct DrivenBarsWithSpatialSprings {
     k: f64,

@@ -87,7 +87,7 @@ where
     const FEEDBACK: bool = M::FEEDBACK;
     const FIRST_ORDER: usize = M::FIRST_ORDER;
 
-    fn impulse(
+    fn velocity_change_by_impulse(
         &self,
         t: f64,
         q: &SVector<f64, NQ>,
@@ -95,7 +95,7 @@ where
         h: f64,
         p: &SVector<f64, NV>,
     ) -> SVector<f64, NV> {
-        self.mechanism.impulse(t, q, v, h, p)
+        self.mechanism.velocity_change_by_impulse(t, q, v, h, p)
     }
     fn acceleration_derivatives(
         &self,

@@ -587,16 +587,18 @@ fn drives_on_constant_lengths(description: &Description) -> BTreeSet<String> {
     let acts_on_length = |drive: &&FileForceElement| matches!(drive.on, FileForceTarget::Length(_));
     let lengths: Vec<&FileForceElement> = description.drives.iter().filter(acts_on_length).collect();
     // The forces on the lengths have different magnitudes, so that the model shows which of them it has.
-    let numbered_push = |(k, drive): (usize, &&FileForceElement)| FileForceElement {
+    let element_with_distinct_force = |(k, drive): (usize, &&FileForceElement)| FileForceElement {
         law: FileForceLaw::Push(k as f64 + 1.0),
         ..(*drive).clone()
     };
-    let probe = Description {
-        drives: lengths.iter().enumerate().map(numbered_push).collect(),
+    let with_distinct_forces = Description {
+        drives: lengths.iter().enumerate().map(element_with_distinct_force).collect(),
         ..description.clone()
     };
     let graph = Graph::new();
-    let Some(model) = build_model(&probe, &graph, &mut Diagnostics::new()) else { return BTreeSet::new() };
+    let Some(model) = build_model(&with_distinct_forces, &graph, &mut Diagnostics::new()) else {
+        return BTreeSet::new();
+    };
     let forces: Vec<f64> = model.loads.iter().filter_map(|load| load.force.constant_value()).collect();
     let has_constant_length = |k: usize| !forces.contains(&(k as f64 + 1.0));
     let names = lengths.iter().enumerate().filter(|(k, _)| has_constant_length(*k));

@@ -5,7 +5,8 @@ use crate::robot::{Robot, State};
 use nalgebra::{DMatrix, DVector, Isometry3, Matrix3, Rotation3, Translation3, Vector3};
 
 impl Robot {
-    /// Returns the index of a function that has a method.
+    /// Returns the index of the function that a method of [`Robot`] calls, or an error if the robot has
+    /// no such function.
     fn index_of(&self, method: Method) -> Result<usize, Error> {
         let name = METHODS[method as usize];
         let index = self.shared.methods[method as usize];

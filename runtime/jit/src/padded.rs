@@ -255,7 +255,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Hooks<
         }
     }
 
-    fn impulse(
+    fn velocity_change_by_impulse(
         &self,
         t: f64,
         q: &SVector<f64, NQ>,

@@ -52,8 +52,8 @@ where
         let found = m.project(0.0, &padded_vector(off.as_slice()), &padded_vector(v.as_slice()))?;
         assert_close_entries(found.0.as_slice(), expected.0.as_slice(), name);
         assert_close_entries(found.1.as_slice(), expected.1.as_slice(), name);
-        let p = own.impulse(0.0, &q, &v, 1e-2, &tau);
-        let found = m.impulse(
+        let p = own.velocity_change_by_impulse(0.0, &q, &v, 1e-2, &tau);
+        let found = m.velocity_change_by_impulse(
             0.0,
             &padded_vector(q.as_slice()),
             &padded_vector(v.as_slice()),

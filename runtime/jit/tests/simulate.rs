@@ -92,10 +92,10 @@ fn constraints_agree_with_generated_rust() -> Result<(), std::boxed::Box<dyn std
         let own = Hooks::project(&Slider, 0.0, &sq, &sv)?;
         assert_close_entries(found.0.as_slice(), own.0.as_slice(), 1e-12);
         assert_close_entries(found.1.as_slice(), own.1.as_slice(), 1e-12);
-        let found = Hooks::impulse(&m, 0.0, &found.0, &found.1, 1e-3, &pt);
+        let found = Hooks::velocity_change_by_impulse(&m, 0.0, &found.0, &found.1, 1e-3, &pt);
         assert_close_entries(
             found.as_slice(),
-            Hooks::impulse(&Slider, 0.0, &own.0, &own.1, 1e-3, &st).as_slice(),
+            Hooks::velocity_change_by_impulse(&Slider, 0.0, &own.0, &own.1, 1e-3, &st).as_slice(),
             1e-12,
         );
         let (by_q, by_v, by_tau) = Slider.forward_dynamics_derivatives(&sq, &sv, &st);

@@ -242,7 +242,7 @@ where
     }
 
     /// Computes the velocity change by an impulse for each lane separately if there are constraints.
-    fn impulse(
+    fn velocity_change_by_impulse(
         &self,
         t: Lanes<M::Scalar, L>,
         q: &LaneColumn<M::Scalar, L, NQ>,
@@ -251,8 +251,15 @@ where
         p: &LaneColumn<M::Scalar, L, NV>,
     ) -> LaneColumn<M::Scalar, L, NV> {
         if M::CONSTRAINED {
-            let one =
-                |k: usize| self.mechanism.impulse(t.0[k], &lane(q, k), &lane(v, k), h.0[k], &lane(p, k));
+            let one = |k: usize| {
+                self.mechanism.velocity_change_by_impulse(
+                    t.0[k],
+                    &lane(q, k),
+                    &lane(v, k),
+                    h.0[k],
+                    &lane(p, k),
+                )
+            };
             return lane_by_lane(one);
         }
         self.forward_dynamics(t, q, v, &(self.bias_forces(t, q, v) + p))

@@ -182,7 +182,8 @@ impl<A: Arithmetic, T: Real> VelocityForceDerivatives<A, T> {
         Spatials { linear: cross(x, &self.vector), angular: transform(&self.matrix, x) }
     }
 
-    /// Returns the transposed map of motions: moments without forces.
+    /// Returns the transposed map of a motion, `p × v + (tr K − K)ᵀ ω`. It is a moment; the corresponding
+    /// force is zero.
     #[inline(always)]
     fn apply_transposed(&self, x: &Spatials<A, T>) -> Vectors<A, T> {
         transform_add(&transpose(&self.matrix), &x.angular, &cross(&self.vector, &x.linear))

@@ -224,7 +224,7 @@ where
 
     /// Returns the velocity change due to a generalized impulse. Only constraint rates are corrected, because
     /// violations of the configuration decay by themselves.
-    fn impulse(
+    fn velocity_change_by_impulse(
         &self,
         t: M::Scalar,
         q: &SVector<M::Scalar, NQ>,
@@ -232,7 +232,7 @@ where
         _h: M::Scalar,
         p: &SVector<M::Scalar, NV>,
     ) -> SVector<M::Scalar, NV> {
-        self.mechanism.impulse(t, q, v, constant(0.0), p)
+        self.mechanism.velocity_change_by_impulse(t, q, v, constant(0.0), p)
     }
 
     fn acceleration_derivatives(

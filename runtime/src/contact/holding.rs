@@ -233,9 +233,9 @@ where
         Ok((*q, *v))
     }
 
-    /// Returns the velocity after a generalized impulse, such that the velocities of enforced contacts keep
-    /// their values, zero or not.
-    fn impulse(
+    /// Returns the velocity change due to a generalized impulse. It does not change the velocities of
+    /// enforced contacts, zero or not.
+    fn velocity_change_by_impulse(
         &self,
         t: T,
         q: &SVector<T, NQ>,

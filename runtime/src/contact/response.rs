@@ -25,15 +25,22 @@ where
     let factor =
         if is_plain { CholeskyFactor::cholesky_of_mass_matrix(&mechanism.mass_matrix(t, q)) } else { None };
     let still = SVector::zeros();
-    let none =
-        if factor.is_none() { mechanism.impulse(t, q, &still, T::zero(), &SVector::zeros()) } else { still };
+    let none = if factor.is_none() {
+        mechanism.velocity_change_by_impulse(t, q, &still, T::zero(), &SVector::zeros())
+    } else {
+        still
+    };
     let closed = mechanism.contact_tables().0.into_iter().zip(closed).filter(|(_, is_closed)| **is_closed);
     for row in closed.flat_map(|(Rows { first, count }, _)| first..first + count) {
         let p = jacobian.data.0.map(|column| column.get(row).copied().unwrap_or(T::zero()));
         let Some(answer) = velocities.data.0.get_mut(row) else { continue };
         *answer = match &factor {
             Some(factor) => factor.solve_with_factor(p),
-            None => (mechanism.impulse(t, q, &still, T::zero(), &SVector::from(p)) - none).data.0[0],
+            None => {
+                (mechanism.velocity_change_by_impulse(t, q, &still, T::zero(), &SVector::from(p)) - none)
+                    .data
+                    .0[0]
+            }
         };
     }
     let mut rates = SMatrix::<T, NR, NR>::zeros();

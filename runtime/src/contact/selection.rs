@@ -166,9 +166,9 @@ impl<const CK: usize, const CR: usize> ContactSelection<CK, CR> {
             return;
         }
         let still = SVector::zeros();
-        let none = mechanism.impulse(t, q, &still, T::zero(), &still);
-        let solve =
-            |row: [T; NV]| (mechanism.impulse(t, q, &still, T::zero(), &SVector::from(row)) - none).data.0[0];
+        let velocity_change = |p: &_| mechanism.velocity_change_by_impulse(t, q, &still, T::zero(), p);
+        let none = velocity_change(&still);
+        let solve = |row: [T; NV]| (velocity_change(&SVector::from(row)) - none).data.0[0];
         *effects = ImpulseEffects::Matrix(self.compute_responses_and_weights(jacobian, solve, problem));
     }
 

@@ -269,7 +269,7 @@ where
         Ok((q, join(&v, &x)))
     }
 
-    fn impulse(
+    fn velocity_change_by_impulse(
         &self,
         t: M::Scalar,
         q: &SVector<M::Scalar, NQ>,
@@ -278,7 +278,7 @@ where
         p: &SVector<M::Scalar, NE>,
     ) -> SVector<M::Scalar, NE> {
         let ((m, v), (p, given)) = (self.with_states(v), split::<_, NV, NX, NE>(p));
-        join(&m.impulse(t, q, &v, h, &p), &given)
+        join(&m.velocity_change_by_impulse(t, q, &v, h, &p), &given)
     }
 
     fn is_nearly_singular(

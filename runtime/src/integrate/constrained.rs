@@ -191,7 +191,7 @@ pub(super) fn solve_for_midpoint_velocity<
         let q = system.integrate(&start.q, &displacement_to_midpoint(system, &start.q, &v, half));
         let gain = rate(system, t, &q, &v) * half;
         let own = system.momentum(t, &q, &v);
-        let change = system.impulse(start.t, &start.q, &v, h, &(p + gain - own));
+        let change = system.velocity_change_by_impulse(start.t, &start.q, &v, h, &(p + gain - own));
         v += change * pace.next_relaxation_factor(&change);
         if !is_finite(&v) {
             return Err(divergence_error(start.t, iterations));

@@ -106,7 +106,7 @@ pub trait Hooks<T: Real, const NQ: usize, const NV: usize, const NU: usize> {
     /// that the constraints are satisfied, to first order in `x`, after the new velocity has lasted for `h`
     /// seconds; for `h = 0`, such that their rates are zero. Implicit methods solve their equations with this
     /// function.
-    fn impulse(
+    fn velocity_change_by_impulse(
         &self,
         t: T,
         q: &SVector<T, NQ>,

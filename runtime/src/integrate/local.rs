@@ -111,7 +111,7 @@ impl<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize> Dynamics
         self.system.velocity(self.origin + t, q, p, v)
     }
 
-    fn impulse(
+    fn velocity_change_by_impulse(
         &self,
         t: T,
         q: &SVector<T, NQ>,
@@ -119,7 +119,7 @@ impl<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize> Dynamics
         h: T,
         p: &SVector<T, NV>,
     ) -> SVector<T, NV> {
-        self.system.impulse(self.origin + t, q, v, h, p)
+        self.system.velocity_change_by_impulse(self.origin + t, q, v, h, p)
     }
 
     fn response(

@@ -95,7 +95,7 @@ pub(super) fn acceleration_jacobian_at_start<
             // The component of the direction that the constraints allow: elsewhere, other branches of the
             // motion diverge from the actual one.
             let p = system.momentum(*t, q, &(v + direction)) - momentum;
-            direction = system.impulse(*t, q, v, T::zero(), &p);
+            direction = system.velocity_change_by_impulse(*t, q, v, T::zero(), &p);
         }
         let (by_q, by_v) = if let Some((by_q, by_v)) = known {
             (by_q * direction, by_v * direction)

@@ -164,7 +164,7 @@ pub trait Dynamics<T: Real, const NQ: usize, const NV: usize> {
     /// Returns the change of the velocity `v` due to the generalized impulse `p` and the constraint impulses.
     /// The constraints are satisfied to first order after the new velocity has lasted for `h` seconds
     /// ([`impulse`](crate::integrate::Hooks::impulse)).
-    fn impulse(
+    fn velocity_change_by_impulse(
         &self,
         t: T,
         q: &SVector<T, NQ>,
@@ -182,7 +182,7 @@ pub trait Dynamics<T: Real, const NQ: usize, const NV: usize> {
         v: &SVector<T, NV>,
         p: &SVector<T, NV>,
     ) -> SVector<T, NV> {
-        self.impulse(t, q, v, T::zero(), p)
+        self.velocity_change_by_impulse(t, q, v, T::zero(), p)
     }
 
     /// Returns the velocity `v` expressed in the axes of ball and free joints after the displacement `dv`,
@@ -410,10 +410,10 @@ where
         // The momentum is M v + b: with τ = h + p − (M v + b) the equation of motion M a + h = τ has the
         // solution a = M⁻¹ (p − b) − v.
         let missing = p - self.mechanism.generalized_momentum(t, q, v);
-        v + self.mechanism.impulse(t, q, v, T::zero(), &missing)
+        v + self.mechanism.velocity_change_by_impulse(t, q, v, T::zero(), &missing)
     }
 
-    fn impulse(
+    fn velocity_change_by_impulse(
         &self,
         t: T,
         q: &SVector<T, NQ>,
@@ -421,7 +421,7 @@ where
         h: T,
         p: &SVector<T, NV>,
     ) -> SVector<T, NV> {
-        self.mechanism.impulse(t, q, v, h, p)
+        self.mechanism.velocity_change_by_impulse(t, q, v, h, p)
     }
 
     fn response(

@@ -171,7 +171,7 @@ impl<
     }
 }
 
-/// Returns the rows of a matrix as columns, in blocks of four by four, transposed in registers.
+/// Returns the rows of a matrix that is given by columns. Blocks of four by four are transposed in registers.
 #[inline(always)]
 fn rows_from_columns<T: Real, const L: usize, const N: usize>(columns: &[[T; L]; N]) -> [[T; N]; L] {
     let mut rows = [[T::zero(); N]; L];

@@ -428,7 +428,8 @@ pub fn write_projection_hooks(out: &mut String, c: &Constraints, s: &Signature<'
             ::linkwork::ConstraintError> {{
             ::linkwork::Constrained::project_state(self, t, q, v)
         }}
-        #[inline]\nfn impulse(&self, t: {scalar}, q: &{q}, v: &{v}, h: {scalar}, p: &{v}) -> {v} {{
+        #[inline]\nfn velocity_change_by_impulse(&self, t: {scalar}, q: &{q}, v: &{v}, h: {scalar}, p: &{v}) \
+            -> {v} {{
             ::linkwork::Constrained::constrained_impulse(self, t, q, v, h, p)
         }}
         fn is_nearly_singular(&self, t: {scalar}, q: &{q}, dv: &{v}) -> bool {{

@@ -323,7 +323,7 @@ impl<'g> FreedBody<'_, '_, 'g> {
         }
     }
 
-    /// Returns the reactions on the body of the tree's joints, and of elements placed by `at` and `frame`.
+    /// Returns the reactions that act on the body in joints of the tree, and where `at` or `frame` places it.
     fn joint_reactions_on_body(&self) -> Vec<DiagramAction<'g>> {
         let g = self.scope.graph;
         let mut all = Vec::new();

@@ -115,7 +115,8 @@ impl<const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const N
     forward! {
         features() -> Features;
         project(t: f64, q: &Vector<NQ>, v: &Vector<NV>) -> Result<Projected<f64, NQ, NV>, ConstraintError>;
-        impulse(t: f64, q: &Vector<NQ>, v: &Vector<NV>, h: f64, p: &Vector<NV>) -> Vector<NV>;
+        velocity_change_by_impulse(t: f64, q: &Vector<NQ>, v: &Vector<NV>, h: f64, p: &Vector<NV>)
+            -> Vector<NV>;
         is_nearly_singular(t: f64, q: &Vector<NQ>, dv: &Vector<NV>) -> bool;
         acceleration_derivatives(t: f64, q: &Vector<NQ>, v: &Vector<NV>, u: &Vector<NU>)
             -> Option<ByMotion<f64, NV, NU>>;

@@ -33,7 +33,7 @@ impl<'g> SubtreeMassAndWrench<'g> {
         }
     }
 
-    /// Returns the transposed velocity map of `x`: a moment without force.
+    /// Returns the transposed velocity map of a motion `x`. It is a moment; the corresponding force is zero.
     pub fn transposed_velocity_map(&self, x: &SpatialVector<'g>) -> Vec3<'g> {
         self.momentum.cross(x.linear) + minus_trace(&self.moments.transpose()) * -x.angular
     }
