@@ -158,23 +158,7 @@ impl<'a> ConvertedStruct<'a> {
         if !d.contacts.is_empty() {
             self.notes.push(format!("contacts, which `#[contact]` declares: {}", d.contacts.len()));
         }
-        let initial: Vec<String> = d
-            .joints
-            .iter()
-            .filter(|joint| !joint.initial.is_empty())
-            .map(|joint| {
-                let field = self.joints.field_name_or_original(&joint.name.text);
-                let values: Vec<String> = joint.initial.iter().map(ToString::to_string).collect();
-                format!("`{field}` {}", values.join(" "))
-            })
-            .collect();
-        if !initial.is_empty() {
-            self.notes.push(format!(
-                "initial coordinates of {} joints, which programs pass to `from` of a simulation: {}",
-                initial.len(),
-                initial.join(", ")
-            ));
-        }
+        self.note_initial_coordinates();
         let mut options = vec![format!(
             "gravity = {}",
             d.gravity.as_ref().map_or("0 * z".to_string(), written::format_gravity)
@@ -207,6 +191,28 @@ impl<'a> ConvertedStruct<'a> {
         text.push_str(&self.fields);
         text.push_str("}\n");
         text
+    }
+
+    /// Notes the coordinates at which the file places its bodies, because structs declare none.
+    fn note_initial_coordinates(&mut self) {
+        let initial: Vec<String> = self
+            .description
+            .joints
+            .iter()
+            .filter(|joint| !joint.initial.is_empty())
+            .map(|joint| {
+                let field = self.joints.field_name_or_original(&joint.name.text);
+                let values: Vec<String> = joint.initial.iter().map(ToString::to_string).collect();
+                format!("`{field}` {}", values.join(" "))
+            })
+            .collect();
+        if !initial.is_empty() {
+            self.notes.push(format!(
+                "initial coordinates of {} joints, which programs pass to `from` of a simulation: {}",
+                initial.len(),
+                initial.join(", ")
+            ));
+        }
     }
 
     fn add_field(&mut self, attribute: &str, name: &str, kind: &str) {
@@ -476,7 +482,7 @@ impl<'a> ConvertedStruct<'a> {
                 FileForceLaw::Slack { stiffness, range } => {
                     let range = range.map(|end| end / w);
                     (
-                        slack_spring_energy_source(
+                        written::slack_spring_energy_source(
                             stiffness.map(|k| k * w * w),
                             if w < 0.0 { [range[1], range[0]] } else { range },
                         ),
@@ -492,8 +498,10 @@ impl<'a> ConvertedStruct<'a> {
                     };
                     (format!("stiffness = {}{free}", format_number(stiffness * w * w)), "Spring")
                 }
-                FileForceLaw::Damper(damping) => (damper_law_text(damping * w * w), "Dashpot"),
-                FileForceLaw::PolynomialDamper(damping) => (polynomial_damper_law(damping), "Dashpot"),
+                FileForceLaw::Damper(damping) => (written::damper_law_text(damping * w * w), "Dashpot"),
+                FileForceLaw::PolynomialDamper(damping) => {
+                    (written::polynomial_damper_law(damping), "Dashpot")
+                }
                 FileForceLaw::Friction(force) => {
                     (format!("coulomb = {}", format_number((force * w).abs())), "Friction")
                 }
@@ -522,10 +530,10 @@ impl<'a> ConvertedStruct<'a> {
                 "Spring",
             ),
             FileForceLaw::Slack { stiffness, range } => {
-                (slack_spring_energy_source(stiffness, range), "Spring")
+                (written::slack_spring_energy_source(stiffness, range), "Spring")
             }
-            FileForceLaw::Damper(damping) => (damper_law_text(damping), "Dashpot"),
-            FileForceLaw::PolynomialDamper(damping) => (polynomial_damper_law(damping), "Dashpot"),
+            FileForceLaw::Damper(damping) => (written::damper_law_text(damping), "Dashpot"),
+            FileForceLaw::PolynomialDamper(damping) => (written::polynomial_damper_law(damping), "Dashpot"),
             FileForceLaw::Friction(force) => (format!("coulomb = {}", format_number(force)), "Friction"),
             FileForceLaw::Inerter(inertance) => {
                 (format!("inertance = {}", format_number(inertance)), "Inerter")
@@ -573,14 +581,6 @@ fn format_vector_in_axes(vector: [f64; 3], body: &str) -> String {
     parts.map(|(x, axis)| format!("{} * {body}.{axis}", format_number(x))).collect::<Vec<_>>().join(" + ")
 }
 
-/// Returns the law of a damper; one with a negative coefficient, which adds energy, is written as a force.
-fn damper_law_text(damping: f64) -> String {
-    match damping < 0.0 {
-        true => format!("force = {} * speed", format_number(damping)),
-        false => format!("damping = {}", format_number(damping)),
-    }
-}
-
 /// Returns the names of drives on lengths that do not change with the motion, so that the drives have no
 /// effect.
 fn drives_on_constant_lengths(description: &Description) -> BTreeSet<String> {
@@ -603,25 +603,4 @@ fn drives_on_constant_lengths(description: &Description) -> BTreeSet<String> {
     let has_constant_length = |k: usize| !forces.contains(&(k as f64 + 1.0));
     let names = lengths.iter().enumerate().filter(|(k, _)| has_constant_length(*k));
     names.map(|(_, drive)| drive.name.text.clone()).collect()
-}
-
-/// Returns the law of a damper whose force is a polynomial of the magnitude of the speed.
-fn polynomial_damper_law(damping: [f64; 3]) -> String {
-    let [first, second, third] = damping.map(format_number);
-    format!("force = ({first} + ({second} + {third} * abs(speed)) * abs(speed)) * speed")
-}
-
-/// Returns the energy of a spring that is slack within a range, and whose force is a polynomial of the excess
-/// beyond it, with these coefficients of its first three powers.
-fn slack_spring_energy_source(stiffness: [f64; 3], [low, high]: [f64; 2]) -> String {
-    let (from, to) = (format_number(low), format_number(high));
-    let power_of_excess_text = |n: u8| match low == high {
-        true => format!("pow(stretch - {from}, {n})"),
-        false => format!("(pow(min(stretch - {from}, 0), {n}) + pow(max(stretch - {to}, 0), {n}))"),
-    };
-    let terms = [(stiffness[0] / 2.0, 2), (stiffness[1] / 3.0, 3), (stiffness[2] / 4.0, 4)];
-    let terms = terms.into_iter().filter(|(k, _)| *k != 0.0);
-    let terms: Vec<String> =
-        terms.map(|(k, n)| format!("{} * {}", format_number(k), power_of_excess_text(n))).collect();
-    format!("energy = {}", terms.join(" + "))
 }

@@ -136,3 +136,32 @@ pub fn format_inertia(e: &Expr, written: &str) -> String {
         _ => written.to_string(),
     }
 }
+
+/// Returns the law of a damper whose force is a polynomial of the magnitude of the speed.
+pub fn polynomial_damper_law(damping: [f64; 3]) -> String {
+    let [first, second, third] = damping.map(format_number);
+    format!("force = ({first} + ({second} + {third} * abs(speed)) * abs(speed)) * speed")
+}
+
+/// Returns the energy of a spring that is slack within a range, and whose force is a polynomial of the excess
+/// beyond it, with these coefficients of its first three powers.
+pub fn slack_spring_energy_source(stiffness: [f64; 3], [low, high]: [f64; 2]) -> String {
+    let (from, to) = (format_number(low), format_number(high));
+    let power_of_excess_text = |n: u8| match low == high {
+        true => format!("pow(stretch - {from}, {n})"),
+        false => format!("(pow(min(stretch - {from}, 0), {n}) + pow(max(stretch - {to}, 0), {n}))"),
+    };
+    let terms = [(stiffness[0] / 2.0, 2), (stiffness[1] / 3.0, 3), (stiffness[2] / 4.0, 4)];
+    let terms = terms.into_iter().filter(|(k, _)| *k != 0.0);
+    let terms: Vec<String> =
+        terms.map(|(k, n)| format!("{} * {}", format_number(k), power_of_excess_text(n))).collect();
+    format!("energy = {}", terms.join(" + "))
+}
+
+/// Returns the law of a damper; one with a negative coefficient, which adds energy, is written as a force.
+pub fn damper_law_text(damping: f64) -> String {
+    match damping < 0.0 {
+        true => format!("force = {} * speed", format_number(damping)),
+        false => format!("damping = {}", format_number(damping)),
+    }
+}

@@ -21,6 +21,23 @@ struct File {
     imports: Vec<(String, Vec<String>, bool)>,
 }
 
+/// Returns the paths of all Rust files below a folder.
+pub fn rust_files(folder: &Path) -> Vec<PathBuf> {
+    let mut files = Vec::new();
+    let mut todo = vec![folder.to_path_buf()];
+    while let Some(folder) = todo.pop() {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                todo.push(path);
+            } else if path.extension().is_some_and(|end| end == "rs") {
+                files.push(path);
+            }
+        }
+    }
+    files
+}
+
 /// Source files of the crate, with the dependencies between them.
 pub struct SourceDependencies {
     files: Vec<File>,
@@ -30,18 +47,8 @@ pub struct SourceDependencies {
 impl SourceDependencies {
     /// Reads all source files of the compiler below a folder, except tests.
     pub fn read_imports(source: &Path) -> SourceDependencies {
-        let mut files = Vec::new();
-        let mut todo = vec![source.to_path_buf()];
-        while let Some(folder) = todo.pop() {
-            for entry in fs::read_dir(folder).unwrap() {
-                let path = entry.unwrap().path();
-                if path.is_dir() {
-                    todo.push(path);
-                } else if path.extension().is_some_and(|end| end == "rs") && !is_test_file(&path) {
-                    files.push(File::read_file_imports(source, path));
-                }
-            }
-        }
+        let paths = rust_files(source).into_iter().filter(|path| !is_test_file(path));
+        let mut files: Vec<File> = paths.map(|path| File::read_file_imports(source, path)).collect();
         files.sort_by(|a, b| a.path.cmp(&b.path));
         let by_module = files.iter().enumerate().map(|(k, file)| (file.module.clone(), k)).collect();
         SourceDependencies { files, by_module }

@@ -2,7 +2,7 @@
 
 mod imports;
 
-use imports::{SourceDependencies, dependency_cycles};
+use imports::{SourceDependencies, dependency_cycles, rust_files};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -36,17 +36,7 @@ fn source_files_with_modules() -> Vec<(String, PathBuf)> {
             let first = path.strip_prefix(&source).unwrap().components().next().unwrap();
             Path::new(first.as_os_str()).file_stem().unwrap().to_string_lossy().into_owned()
         };
-        let mut todo = vec![source.clone()];
-        while let Some(folder) = todo.pop() {
-            for entry in fs::read_dir(folder).unwrap() {
-                let path = entry.unwrap().path();
-                if path.is_dir() {
-                    todo.push(path);
-                } else if path.extension().is_some_and(|end| end == "rs") {
-                    files.push((module_of_path(&path), path));
-                }
-            }
-        }
+        files.extend(rust_files(&source).into_iter().map(|path| (module_of_path(&path), path)));
     }
     files.sort();
     files

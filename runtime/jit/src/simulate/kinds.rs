@@ -22,6 +22,8 @@ macro_rules! method_kind {
             $($method($method<f64>, <$method<f64> as Method<f64>>::Memory<NV>),)*
         }
 
+        const _: () = assert!($(<$method<f64> as Method<f64>>::FIXED == $fixed)&&*);
+
         impl Method<f64> for $kind {
             type Memory<const NV: usize> = $memory<NV>;
 

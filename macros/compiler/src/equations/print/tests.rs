@@ -2,8 +2,7 @@
 
 use super::*;
 use crate::algebra::normal::NormalFormCache;
-use crate::expr::Expr;
-use crate::expr::{Function, Graph};
+use crate::expr::{Expr, Function, Graph};
 
 /// Names of parameters, coordinates, rates and an input: `m k l`, `x y`, `x' y'`, `u`.
 const NAMES: [&str; 8] = ["m", "k", "l", "x", "y", "x'", "y'", "u"];
