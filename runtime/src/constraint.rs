@@ -197,10 +197,11 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         None
     }
 
-    /// Returns [`impulse`](crate::integrate::Hooks::impulse) of a mechanism with constraints. Holonomic
-    /// constraints are evaluated at the configuration that `v` reaches in `h` seconds, velocity constraints
-    /// half-way to it (a discrete constraint that is symmetric in time: McLachlan and Perlmutter,
-    /// *Integrators for nonholonomic mechanical systems*, J. Nonlinear Sci. 16, 2006).
+    /// Returns [`velocity_change_by_impulse`](crate::integrate::Hooks::velocity_change_by_impulse) of a
+    /// mechanism with constraints. Holonomic constraints are evaluated at the configuration that `v` reaches
+    /// in `h` seconds, velocity constraints half-way to it (a discrete constraint that is symmetric in time:
+    /// McLachlan and Perlmutter, *Integrators for nonholonomic mechanical systems*, J. Nonlinear Sci. 16,
+    /// 2006).
     fn constrained_impulse(
         &self,
         t: Self::Scalar,

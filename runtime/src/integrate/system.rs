@@ -163,7 +163,7 @@ pub trait Dynamics<T: Real, const NQ: usize, const NV: usize> {
 
     /// Returns the change of the velocity `v` due to the generalized impulse `p` and the constraint impulses.
     /// The constraints are satisfied to first order after the new velocity has lasted for `h` seconds
-    /// ([`impulse`](crate::integrate::Hooks::impulse)).
+    /// ([`velocity_change_by_impulse`](crate::integrate::Hooks::velocity_change_by_impulse)).
     fn velocity_change_by_impulse(
         &self,
         t: T,
