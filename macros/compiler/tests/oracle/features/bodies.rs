@@ -14,21 +14,26 @@ use linkwork_compiler::{compile, expand, parse_source_and_import};
 use proc_macro2::TokenStream;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
-use syn::{Block, Expr, FnArg, ImplItem, ImplItemFn, Item, ItemImpl, Pat, Stmt};
+use syn::{Block, Expr, FnArg, ImplItem, ImplItemFn, Item, ItemImpl, Pat, Stmt, Type};
 
 /// Functions and constants of the mechanism's inherent implementations, and the bodies of `Evaluate`
 /// implementations by number.
+#[derive(Default)]
 struct EmittedCode {
     functions: BTreeMap<String, ImplItemFn>,
     constants: BTreeMap<String, Expr>,
     bodies: BTreeMap<String, Vec<ImplItemFn>>,
 }
 
-fn parse_emitted_code(text: &str) -> EmittedCode {
-    let mut all =
-        EmittedCode { functions: BTreeMap::new(), constants: BTreeMap::new(), bodies: BTreeMap::new() };
+/// Returns the code emitted for each struct (the mechanism, and the struct with prepared parameters), which
+/// numbers its bodies apart from others.
+fn parse_emitted_code(text: &str) -> Vec<EmittedCode> {
+    let mut all: BTreeMap<String, EmittedCode> = BTreeMap::new();
     for item in syn::parse_file(text).expect("Rust").items {
         let Item::Impl(block) = item else { continue };
+        let Type::Path(of) = &*block.self_ty else { continue };
+        let of = of.path.segments.last().map(|last| last.ident.to_string()).unwrap_or_default();
+        let code = all.entry(of).or_default();
         // Functions in blocks with bounds only report that they are absent.
         let (number, other) =
             (scalar_type_of_impl(&block), block.trait_.is_some() || block.generics.where_clause.is_some());
@@ -36,19 +41,19 @@ fn parse_emitted_code(text: &str) -> EmittedCode {
             let function = match member {
                 ImplItem::Fn(function) => function,
                 ImplItem::Const(constant) if !other => {
-                    all.constants.insert(constant.ident.to_string(), constant.expr);
+                    code.constants.insert(constant.ident.to_string(), constant.expr);
                     continue;
                 }
                 _ => continue,
             };
             match &number {
-                Some(number) => all.bodies.entry(number.clone()).or_default().push(function),
-                None if !other => drop(all.functions.insert(function.sig.ident.to_string(), function)),
+                Some(number) => code.bodies.entry(number.clone()).or_default().push(function),
+                None if !other => drop(code.functions.insert(function.sig.ident.to_string(), function)),
                 None => {}
             }
         }
     }
-    all
+    all.into_values().collect()
 }
 
 /// Returns the scalar type of a generated `impl`, which is the first type argument of its trait
@@ -141,24 +146,25 @@ pub fn compare_interpreted_function_bodies(arguments: &str, item: &str, seed: u6
         return BTreeSet::new();
     };
     let emitted = expand(parse_tokens(arguments), parse_tokens(item), Path::new(""));
-    let written = parse_emitted_code(&emitted.text);
-    check_index_constants(
-        &model,
-        &output,
-        &written,
-        seed,
-        &format!("seed {seed}\n#[mechanism({arguments})]\n{item}"),
-    );
     let mut run = BTreeSet::new();
-    for f in &output.functions {
-        for (suffix, states) in [("", 1), ("_lanes", 2)] {
-            for (k, body) in
-                bodies_of_function(&written, &format!("{}{suffix}", f.name)).into_iter().enumerate()
-            {
-                let name = format!("{}{suffix}, body {k}", f.name);
-                let about = format!("{name}, seed {seed}\n#[mechanism({arguments})]\n{item}");
-                if check_emitted_body(&model, &output, f, &body, (states, seed), &about) {
-                    run.insert(name);
+    for written in parse_emitted_code(&emitted.text) {
+        let about = format!("seed {seed}\n#[mechanism({arguments})]\n{item}");
+        check_index_constants(&model, &output, &written, seed, &about);
+        for f in &output.functions {
+            for (suffix, states) in [("", 1), ("_lanes", 2)] {
+                let name = format!("{}{suffix}", f.name);
+                for (k, body) in bodies_of_function(&written, &name).into_iter().enumerate() {
+                    let name = format!("{name}, body {k}");
+                    if check_emitted_body(
+                        &model,
+                        &output,
+                        f,
+                        &body,
+                        (states, seed),
+                        &format!("{name}, {about}"),
+                    ) {
+                        run.insert(name);
+                    }
                 }
             }
         }
