@@ -106,12 +106,6 @@ impl Robot {
             ..=8 if is_few => Ok(visitor.visit(&PaddedContacts::<8, 8, 8, 8, 24, _>::new(self)?)),
             ..=24 if is_few => Ok(visitor.visit(&PaddedContacts::<24, 24, 24, 8, 24, _>::new(self)?)),
             ..=24 if count <= 32 => Ok(visitor.visit(&PaddedContacts::<24, 24, 24, 32, 96, _>::new(self)?)),
-            ..=MEDIUM if count <= 16 => {
-                Ok(visitor.visit(&PaddedContacts::<MEDIUM, MEDIUM, MEDIUM, 16, 48, _>::new(self)?))
-            }
-            ..=MEDIUM if count <= 64 => {
-                Ok(visitor.visit(&PaddedContacts::<MEDIUM, MEDIUM, MEDIUM, 64, 192, _>::new(self)?))
-            }
             ..=MEDIUM => {
                 Ok(visitor
                     .visit(&PaddedContacts::<MEDIUM, MEDIUM, MEDIUM, MOST_CONTACTS, 384, _>::new(self)?))

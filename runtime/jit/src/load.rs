@@ -390,7 +390,8 @@ fn constraint_data_of_model(model: &Model<'_>) -> Constraints {
 
 fn contacts_of_model(model: &Model<'_>) -> Vec<Contact> {
     let mut first = 0;
-    let contact_with_row_range = |(k, contact): (usize, &mechanism::Contact<'_>)| {
+    let contacts = model.contacts.iter().zip(model.contact_velocity_dependences()).enumerate();
+    let contact_with_row_range = |(k, (contact, dependence)): (usize, (&mechanism::Contact<'_>, _))| {
         let count = contact.rates.len();
         first += count;
         Contact {
@@ -398,9 +399,10 @@ fn contacts_of_model(model: &Model<'_>) -> Vec<Contact> {
             rows: [first - count, count],
             pressed_by: contact.pressed_by.unwrap_or(k),
             of_impulses: contact.of_impulses,
+            dependence,
         }
     };
-    model.contacts.iter().enumerate().map(contact_with_row_range).collect()
+    contacts.map(contact_with_row_range).collect()
 }
 
 fn convert_requirement(model: &Model<'_>, requirement: &mechanism::Requirement<'_>) -> ParameterRequirement {

@@ -173,7 +173,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
     }
 
     /// Returns a matrix whose first rows and columns are the results of a function, and whose other entries
-    /// are those of `all`.
+    /// are those of `all`, which is zero or the identity.
     fn matrix_with_results<const N: usize, const M: usize>(
         &self,
         f: InternalFunction,
@@ -181,13 +181,14 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         (rows, columns): (usize, usize),
         mut all: SMatrix<f64, N, M>,
     ) -> SMatrix<f64, N, M> {
-        if rows == N {
-            self.call_function(f, state, &mut all.as_mut_slice()[..rows * columns]);
-        } else {
-            let mut found = SMatrix::<f64, N, M>::zeros();
-            let found = &mut found.as_mut_slice()[..rows * columns];
-            self.call_function(f, state, found);
-            write_block(&mut all, rows, found);
+        let entries = all.as_mut_slice();
+        self.call_function(f, state, &mut entries[..rows * columns]);
+        // The last columns first: no entry is overwritten before it is moved.
+        for j in (1..columns).rev() {
+            entries.copy_within(j * rows..(j + 1) * rows, j * N);
+        }
+        for column in entries.chunks_exact_mut(N.max(1)).take(columns) {
+            column[rows..].fill(0.0);
         }
         all
     }

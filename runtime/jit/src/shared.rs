@@ -7,7 +7,7 @@ use crate::layout::Layout;
 use crate::polytopes::Polytopes;
 use crate::routine::Values;
 use linkwork_compiler::catalogue::Argument;
-use linkwork_compiler::mechanism::Chart;
+use linkwork_compiler::mechanism::{Chart, ContactVelocityDependence};
 use std::collections::HashMap;
 
 /// Numbers of configuration coordinates, velocities and inputs of a mechanism.
@@ -77,6 +77,8 @@ pub(crate) struct Contact {
     pub pressed_by: usize,
     /// Whether the restitution coefficient is a ratio of impulses instead of velocities.
     pub of_impulses: bool,
+    /// Velocities on which its contact velocities depend.
+    pub dependence: ContactVelocityDependence,
 }
 
 /// First-order state of a loaded mechanism.

@@ -61,12 +61,7 @@ where
         ContactSelection::<NK, NR>::select_closed_contacts(ContactLayout::of_mechanism(mechanism), &closed);
     let mut acted = ContactsWithImpulses::contacts_without_impulses(selection, true);
     let carried = came.transport_velocity_to_end(mechanism, t + h, &free.q);
-    let contact_velocities_before_impulses = || {
-        ContactVelocities::<M, T, NQ, NV, NR>::rates_of_selected_contacts(
-            &selection,
-            velocities.rate_function_of_velocity(&carried),
-        )
-    };
+    let contact_velocities_before_impulses = || velocities.selected_rates(&selection, &carried);
     let solved = compute_closed_contact_impulses(
         mechanism,
         (t + h, &velocities),

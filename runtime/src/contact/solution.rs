@@ -94,10 +94,7 @@ where
     let laws = checked_contact_laws(mechanism)?;
     let ContactsWithImpulses { selection, problem, effects, .. } = acted;
     let (layout, laws) = (selection.contact_layout(), selection.selected_laws(&laws));
-    let after = ContactVelocities::<M, T, NQ, NV, NR>::rates_of_selected_contacts(
-        selection,
-        velocities.rate_function_of_velocity(free),
-    );
+    let after = velocities.selected_rates(selection, free);
     problem.add_closed_contacts(layout, &laws, &selection.selected_contact_mask(), &after);
     if laws.iter().any(|law| law.stiction > law.friction) {
         let rates = before();
@@ -127,10 +124,7 @@ where
     let still = SVector::<T, NV>::zeros();
     let recorded = recorded.map(|all| problem.gather_closed_rows(&all));
     let transported = given.filter(|given| is_moving && **given != still).map(|given| {
-        let rates = ContactVelocities::<M, T, NQ, NV, NR>::rates_of_selected_contacts(
-            selection,
-            velocities.rate_change_function(given),
-        );
+        let rates = velocities.selected_rate_changes(selection, given);
         problem.correct_velocity_for_rotation(given, (&rates, recorded.as_ref()), effects, &mut equations)
     });
     let start = transported.and_then(|(start, correction)| {

@@ -277,10 +277,7 @@ where
     let mut acted = ContactsWithImpulses::contacts_without_impulses(selection, true);
     let contact_velocities_at_step_end = || {
         let carried = came.transport_velocity_to_end(mechanism, t, q);
-        ContactVelocities::<M, T, NQ, NV, NR>::rates_of_selected_contacts(
-            &selection,
-            velocities.rate_function_of_velocity(&carried),
-        )
+        velocities.selected_rates(&selection, &carried)
     };
     let moves_farther_than = |far: T| v.iter().any(|v| v.abs() * h > far);
     let is_moving = moves_farther_than(touching_distance::<T>() * constant(10.0));
@@ -407,14 +404,8 @@ where
     if largest_magnitude(&excess) <= largest_magnitude(&touched.held) * h * epsilon::<T>().sqrt() {
         return None;
     }
-    let crept = ContactVelocities::<M, T, NQ, NV, NR>::rates_of_selected_contacts(
-        selection,
-        velocities.rate_change_function(&excess),
-    );
-    let slip = ContactVelocities::<M, T, NQ, NV, NR>::rates_of_selected_contacts(
-        selection,
-        velocities.rate_function_of_velocity(after),
-    );
+    let crept = velocities.selected_rate_changes(selection, &excess);
+    let slip = velocities.selected_rates(selection, after);
     let (layout, mut back) = (selection.contact_layout(), SVector::<T, CR>::zeros());
     for tangents in (0..CK).map(|k| layout.tangent_rows(k)) {
         if tangents

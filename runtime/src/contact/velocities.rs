@@ -123,21 +123,64 @@ impl<'a, M, T: Real, const NQ: usize, const NV: usize, const NR: usize>
         }
     }
 
-    /// Returns values of a function of contacts and rows for selected contacts.
-    pub(super) fn rates_of_selected_contacts<const CK: usize, const CR: usize>(
+    /// Returns the contact velocities of selected contacts for a velocity.
+    pub(super) fn selected_rates<const NU: usize, const NK: usize, const CK: usize, const CR: usize>(
+        &self,
         selection: &ContactSelection<CK, CR>,
-        rate: impl Fn(usize, usize) -> T,
-    ) -> SVector<T, CR> {
-        let (layout, mut rates) = (selection.contact_layout(), SVector::zeros());
-        for k in 0..selection.contact_count() {
-            let Rows { first, count } = layout.rows(k);
-            (first..first + count).for_each(|i| {
-                set_entry(
-                    &mut rates,
-                    i,
-                    rate(selection.mechanism_index_of_contact(k), selection.mechanism_index_of_row(i)),
-                )
-            });
+        v: &SVector<T, NV>,
+    ) -> SVector<T, CR>
+    where
+        M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+    {
+        if NR <= FEW {
+            return selection.selected_contact_rates(&self.mechanism.contact_rates(self.t, self.q, v));
+        }
+        let changes = self.selected_rate_changes(selection, v);
+        match self.contact_velocities_at_rest() {
+            Some(drift) => changes + selection.selected_contact_rates(drift),
+            None => changes,
+        }
+    }
+
+    /// Returns the changes of the contact velocities of selected contacts for a change of the velocity.
+    pub(super) fn selected_rate_changes<const NU: usize, const NK: usize, const CK: usize, const CR: usize>(
+        &self,
+        selection: &ContactSelection<CK, CR>,
+        change: &SVector<T, NV>,
+    ) -> SVector<T, CR>
+    where
+        M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+    {
+        let mut rates = SVector::zeros();
+        if NR <= FEW {
+            let rate = self.rate_change_function(change);
+            (0..selection.row_count())
+                .for_each(|i| set_entry(&mut rates, i, rate(0, selection.mechanism_index_of_row(i))));
+            return rates;
+        }
+        let Some(jacobian) = self.contact_jacobian() else { return rates };
+        let columns = self.mechanism.contact_columns();
+        let range = |k: usize| columns.get(selection.mechanism_index_of_contact(k)).copied();
+        let layout = selection.contact_layout();
+        let mut k = 0;
+        while k < selection.contact_count() {
+            let (reach, Rows { first, mut count }) = (range(k), layout.rows(k));
+            let top = selection.mechanism_index_of_row(first);
+            k += 1;
+            // Contacts of the same bodies have adjacent rows, which are multiplied at once.
+            while k < selection.contact_count()
+                && range(k) == reach
+                && selection.mechanism_index_of_row(first + count) == top + count
+            {
+                count += layout.rows(k).count;
+                k += 1;
+            }
+            let (from, to) = reach.unwrap_or((0, NV));
+            let rates = rates.as_mut_slice().get_mut(first..first + count).unwrap_or_default();
+            for (column, v) in jacobian.data.0.iter().zip(&change.data.0[0]).take(to).skip(from) {
+                let entries = column.get(top..top + count).unwrap_or_default();
+                rates.iter_mut().zip(entries).for_each(|(rate, entry)| *rate += *entry * *v);
+            }
         }
         rates
     }

@@ -3,9 +3,7 @@
 use super::interface::Interface;
 use super::signature::Signature;
 use crate::catalogue::{ContactCounts, FunctionNeed, Shape};
-use crate::expr::Symbol;
-use crate::expr::replace::{substitute_symbols_in_all, symbols_in};
-use crate::mechanism::{Contact, Model, Quantity};
+use crate::mechanism::{Contact, ContactVelocityDependence, Model};
 use std::fmt::Write;
 
 /// Unilateral contact, as data for code generation.
@@ -28,44 +26,28 @@ pub struct UnilateralContact {
     laws: [Option<f64>; 3],
     /// True if the static coefficient of friction differs from the kinetic one.
     has_stiction: bool,
-    /// Index of the first velocity that changes its contact velocities, and behind the last.
-    columns: (usize, usize),
-    /// True if its contact velocities may differ from zero at rest, because of prescribed motions.
-    drifts: bool,
-}
-
-/// Returns the index of the velocity that a symbol denotes, if it denotes one.
-fn velocity_index(symbol: Symbol) -> Option<usize> {
-    if let Quantity::Velocity(k) = Quantity::from_symbol(symbol) { Some(k) } else { None }
+    /// Velocities on which its contact velocities depend.
+    dependence: ContactVelocityDependence,
 }
 
 impl UnilateralContact {
     /// Returns the unilateral contacts of a model.
     pub fn from_model(model: &Model<'_>) -> Vec<UnilateralContact> {
-        let rates = model.contact_rates();
-        let at_rest = substitute_symbols_in_all(&rates, &|symbol| {
-            matches!(Quantity::from_symbol(symbol), Quantity::Velocity(_)).then(|| model.graph.zero())
-        });
-        let mut rows = rates.iter().zip(&at_rest);
-        let unilateral_contact_of_model_contact = |c: &Contact<'_>| {
-            let own: Vec<_> = rows.by_ref().take(c.rates.len()).collect();
-            let own_rates: Vec<_> = own.iter().map(|(rate, _)| **rate).collect();
-            let used: Vec<usize> = symbols_in(&own_rates).into_iter().filter_map(velocity_index).collect();
-            let ends = used.iter().min().zip(used.iter().max());
-            let columns = ends.map_or((0, 0), |(first, last)| (*first, last + 1));
-            UnilateralContact {
-                name: c.name.clone(),
-                rates: c.rates.len(),
-                pressed_by: c.pressed_by,
-                turns: c.turns,
-                of_impulses: c.of_impulses,
-                laws: [c.friction, c.restitution, c.stiction].map(|law| law.constant_value()),
-                has_stiction: c.stiction != c.friction,
-                columns,
-                drifts: own.iter().any(|(_, at_rest)| **at_rest != model.graph.zero()),
-            }
-        };
-        model.contacts.iter().map(unilateral_contact_of_model_contact).collect()
+        let contacts = model.contacts.iter().zip(model.contact_velocity_dependences());
+        contacts.map(|(contact, dependence)| Self::from_contact(contact, dependence)).collect()
+    }
+
+    fn from_contact(c: &Contact<'_>, dependence: ContactVelocityDependence) -> UnilateralContact {
+        UnilateralContact {
+            name: c.name.clone(),
+            rates: c.rates.len(),
+            pressed_by: c.pressed_by,
+            turns: c.turns,
+            of_impulses: c.of_impulses,
+            laws: [c.friction, c.restitution, c.stiction].map(|law| law.constant_value()),
+            has_stiction: c.stiction != c.friction,
+            dependence,
+        }
     }
 
     /// Returns one unnamed contact for a mechanism whose contacts are unknown because of an error.
@@ -78,8 +60,7 @@ impl UnilateralContact {
             of_impulses: false,
             laws: [None; 3],
             has_stiction: false,
-            columns: (0, 0),
-            drifts: false,
+            dependence: ContactVelocityDependence { columns: (0, 0), drifts: false },
         }
     }
 }
@@ -134,12 +115,13 @@ pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
              {{ ::linkwork::contact::Responses::from_list(&self.__contact_responses({pass}q)) }}\n        "
         )
     } else {
-        let columns: Vec<(usize, usize)> = i.contacts.iter().map(|contact| contact.columns).collect();
+        let columns: Vec<(usize, usize)> =
+            i.contacts.iter().map(|contact| contact.dependence.columns).collect();
         format!(
             "#[inline]\nfn contact_columns(&self) -> [(usize, usize); {count}] {{ {columns:?} }}\n        "
         )
     };
-    let drifts = i.contacts.iter().any(|contact| contact.drifts);
+    let drifts = i.contacts.iter().any(|contact| contact.dependence.drifts);
     let pressed_by = if i.contacts.iter().any(|c| c.pressed_by.is_some()) {
         let all: Vec<usize> = i.contacts.iter().enumerate().map(|(k, c)| c.pressed_by.unwrap_or(k)).collect();
         format!("const PRESSED_BY: [usize; {count}] = {all:?};\n        ")

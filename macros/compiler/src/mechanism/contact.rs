@@ -1,6 +1,9 @@
 //! Unilateral contacts of a mechanism, as data of the model.
 
+use super::model::Model;
+use super::quantity::Quantity;
 use crate::expr::Expr;
+use crate::expr::replace::{substitute_symbols_in_all, symbols_in};
 
 /// Unilateral contact of two surfaces, or of a coordinate with its stop: separation, impact, sliding and
 /// sticking.
@@ -27,4 +30,40 @@ pub struct Contact<'g> {
     /// True if the coefficient of restitution is a ratio of impulses (Poisson), false if it is a ratio of
     /// velocities (Newton).
     pub of_impulses: bool,
+}
+
+/// Velocities on which the contact velocities of a contact depend.
+#[derive(Clone, Copy, Debug)]
+pub struct ContactVelocityDependence {
+    /// Index of the first velocity that changes the contact velocities, and behind the last.
+    pub columns: (usize, usize),
+    /// True if the contact velocities may differ from zero at rest, because of prescribed motions.
+    pub drifts: bool,
+}
+
+impl Model<'_> {
+    /// Returns the velocities on which the contact velocities of each contact depend.
+    pub fn contact_velocity_dependences(&self) -> Vec<ContactVelocityDependence> {
+        let velocity_index = |symbol| match Quantity::from_symbol(symbol) {
+            Quantity::Velocity(k) => Some(k),
+            _ => None,
+        };
+        let rates = self.contact_rates();
+        let at_rest = substitute_symbols_in_all(&rates, &|symbol| {
+            velocity_index(symbol).is_some().then(|| self.graph.zero())
+        });
+        let mut at_rest = at_rest.into_iter();
+        let dependence_of_contact = |contact: &Contact<'_>| {
+            let used: Vec<usize> =
+                symbols_in(&contact.rates).into_iter().filter_map(velocity_index).collect();
+            let ends = used.iter().min().zip(used.iter().max());
+            let mut own_at_rest = at_rest.by_ref().take(contact.rates.len());
+            ContactVelocityDependence {
+                columns: ends.map_or((0, 0), |(first, last)| (*first, last + 1)),
+                // All are taken.
+                drifts: own_at_rest.by_ref().filter(|rate| *rate != self.graph.zero()).count() > 0,
+            }
+        };
+        self.contacts.iter().map(dependence_of_contact).collect()
+    }
 }

@@ -27,7 +27,7 @@ pub use constraint::{
     ClosedFormJoint, Constraint, ConstraintPivot, DegreeOfFreedomCounts, FrictionTerm, MeasuredQuantity,
     ReactionComponent,
 };
-pub use contact::Contact;
+pub use contact::{Contact, ContactVelocityDependence};
 pub use drawing::{Piece, PieceShape, ShownObjectKind};
 pub use element::{
     AccelerationForce, CoulombFriction, Dashpot, Inertance, InputEffect, Load, Spring, SumOfLinkVectors,

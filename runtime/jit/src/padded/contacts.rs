@@ -160,6 +160,15 @@ impl<const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const N
         )
     }
 
+    fn contact_columns(&self) -> [(usize, usize); NK] {
+        let contacts = &self.robot().shared.contacts;
+        std::array::from_fn(|k| contacts.get(k).map_or((0, 0), |contact| contact.dependence.columns))
+    }
+
+    fn contacts_drift(&self) -> bool {
+        self.robot().shared.contacts.iter().any(|contact| contact.dependence.drifts)
+    }
+
     fn contact_gaps(&self, t: f64, q: &Vector<NQ>) -> Vector<NK> {
         let count = self.robot().shared.contacts.len();
         self.plain.vector_with_results(
