@@ -214,7 +214,8 @@ where
     let rows = rows.fold(0, |sum, (rows, _)| sum + rows.count);
     let run = (&came, (start, v), (q, free), (given, impulses));
     let at_end = (t, &velocities);
-    // Matrices of few closed contacts are small, however many contacts a mechanism has.
+    // Matrices of few closed contacts are small, however many contacts a mechanism has. The arrays have few
+    // different sizes, so that mechanisms with many contacts share most of the compiled code.
     macro_rules! act_in_arrays {
         ($contacts:ident, $rows:ident) => {
             apply_contact_impulses::<M, T, NQ, NV, NU, NK, NR, $contacts, $rows>(
@@ -227,11 +228,13 @@ where
             )
         };
     }
-    if const { NR > SMALL } && rows <= SMALL {
+    if const { NR <= SMALL } {
+        act_in_arrays!(NK, NR)
+    } else if rows <= SMALL {
         act_in_arrays!(SMALL, SMALL)
-    } else if const { NR > MEDIUM } && rows <= MEDIUM {
+    } else if const { NR <= MEDIUM } || rows <= MEDIUM {
         act_in_arrays!(MEDIUM, MEDIUM)
-    } else if const { NR > LARGE } && rows <= LARGE {
+    } else if const { NR <= LARGE } || rows <= LARGE {
         act_in_arrays!(LARGE, LARGE)
     } else {
         act_in_arrays!(NK, NR)
