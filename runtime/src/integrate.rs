@@ -73,7 +73,7 @@ pub struct State<T, const NQ: usize, const NV: usize> {
 
 impl<T: Real, const NQ: usize, const NV: usize> State<T, NQ, NV> {
     /// Returns the state, or [`Error::NotFinite`] if any of its numbers is infinite or NaN.
-    pub(crate) fn check_finite(self) -> Result<Self, Error> {
+    pub(crate) fn finite_or_error(self) -> Result<Self, Error> {
         let finite = self.t.is_finite() && is_finite(&self.q) && is_finite(&self.v);
         if finite { Ok(self) } else { Err(Error::NotFinite { t: to_f64(self.t) }) }
     }
@@ -87,7 +87,7 @@ pub(crate) fn project_end_of_step<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usi
     t: T,
 ) -> Result<State<T, NQ, NV>, Error> {
     let t = to_f64(t);
-    let end = end.check_finite().map_err(|_| Error::NotFinite { t })?;
+    let end = end.finite_or_error().map_err(|_| Error::NotFinite { t })?;
     if !system.is_constrained() {
         return Ok(end);
     }

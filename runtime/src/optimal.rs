@@ -381,23 +381,23 @@ fn add_general_cost_to_go<T: Real, const NQ: usize, const NV: usize, const NU: u
     let (q_by_q, v_by_q) = (transposed(&step.q_by_q), transposed(&step.v_by_q));
     let (q_by_v, v_by_v) = (transposed(&step.q_by_v), transposed(&step.v_by_v));
     let (q_by_u, v_by_u) = (transposed(&step.q_by_u), transposed(&step.v_by_u));
-    add_two_products(
+    add_configuration_and_velocity_products(
         &mut before.qq,
         &q_by_q,
         &v_by_q,
         &cost_to_go_hessian_product(after, &vq, &step.q_by_q, &step.v_by_q),
     );
     let by_v = cost_to_go_hessian_product(after, &vq, &step.q_by_v, &step.v_by_v);
-    add_two_products(&mut before.qv, &q_by_q, &v_by_q, &by_v);
-    add_two_products(&mut before.vv, &q_by_v, &v_by_v, &by_v);
+    add_configuration_and_velocity_products(&mut before.qv, &q_by_q, &v_by_q, &by_v);
+    add_configuration_and_velocity_products(&mut before.vv, &q_by_v, &v_by_v, &by_v);
     let by_u = cost_to_go_hessian_product(after, &vq, &step.q_by_u, &step.v_by_u);
-    add_two_products(&mut before.qu, &q_by_q, &v_by_q, &by_u);
-    add_two_products(&mut before.vu, &q_by_v, &v_by_v, &by_u);
-    add_two_products(&mut before.uu, &q_by_u, &v_by_u, &by_u);
+    add_configuration_and_velocity_products(&mut before.qu, &q_by_q, &v_by_q, &by_u);
+    add_configuration_and_velocity_products(&mut before.vu, &q_by_v, &v_by_v, &by_u);
+    add_configuration_and_velocity_products(&mut before.uu, &q_by_u, &v_by_u, &by_u);
     let gradient = (after.q, after.v);
-    add_two_products(&mut before.q, &q_by_q, &v_by_q, &gradient);
-    add_two_products(&mut before.v, &q_by_v, &v_by_v, &gradient);
-    add_two_products(&mut before.u, &q_by_u, &v_by_u, &gradient);
+    add_configuration_and_velocity_products(&mut before.q, &q_by_q, &v_by_q, &gradient);
+    add_configuration_and_velocity_products(&mut before.v, &q_by_v, &v_by_v, &gradient);
+    add_configuration_and_velocity_products(&mut before.u, &q_by_u, &v_by_u, &gradient);
 }
 
 /// Returns the product `S X` with the Hessian `S` of the cost-to-go: first its configuration rows, then its
@@ -415,7 +415,7 @@ fn cost_to_go_hessian_product<T: Real, const NV: usize, const C: usize>(
 }
 
 /// Adds the matrix products `q of_q + v of_v` of configuration rows and velocity rows to `sum`.
-fn add_two_products<T: Real, const R: usize, const NV: usize, const C: usize>(
+fn add_configuration_and_velocity_products<T: Real, const R: usize, const NV: usize, const C: usize>(
     sum: &mut SMatrix<T, R, C>,
     q: &SMatrix<T, R, NV>,
     v: &SMatrix<T, R, NV>,

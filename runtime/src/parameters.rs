@@ -360,20 +360,20 @@ mod tests {
 
     #[test]
     fn fault_in_one_lane_is_reported() {
-        let condition_with_rule = |rule| [Figure { rule, name: "x", parameters: &[] }];
+        let parameter_check_with_rule = |rule| [Figure { rule, name: "x", parameters: &[] }];
         for (rule, values, fault) in TABLE {
             // The other lanes contain values that every rule except `Order` admits.
-            let valid_value = |k: usize| {
+            let valid_rule_argument = |k: usize| {
                 if rule == Rule::Order { k as f64 } else { [1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0][k] }
             };
             let lanes_with_one_fault =
-                |k: usize| f64x4::from_fn(|lane| if lane == 2 { values[k] } else { valid_value(k) });
+                |k: usize| f64x4::from_fn(|lane| if lane == 2 { values[k] } else { valid_rule_argument(k) });
             let values: std::vec::Vec<f64x4> = (0..values.len()).map(lanes_with_one_fault).collect();
-            let found = validate(&condition_with_rule(rule), &values).err().map(|error| error.fault);
+            let found = validate(&parameter_check_with_rule(rule), &values).err().map(|error| error.fault);
             assert_eq!(found, fault, "{rule:?} {values:?}");
         }
-        assert_eq!(validate(&condition_with_rule(Rule::Mass), &[Lanes([0.0, 1.0, 2.0])]), Ok(()));
-        let small = validate(&condition_with_rule(Rule::Mass), &[Lanes([0.0, 1.0, 1e-310])]);
+        assert_eq!(validate(&parameter_check_with_rule(Rule::Mass), &[Lanes([0.0, 1.0, 2.0])]), Ok(()));
+        let small = validate(&parameter_check_with_rule(Rule::Mass), &[Lanes([0.0, 1.0, 1e-310])]);
         assert_eq!(small.unwrap_err().fault, Fault::TooSmall);
     }
 

@@ -52,7 +52,7 @@ impl MechanismAssembler<'_, '_> {
 
     /// Returns which velocities of joints change marked entries of a configuration, or entries that change
     /// together with them.
-    pub fn velocities_moving_entries(&self, marks: &[bool]) -> Vec<bool> {
+    pub fn velocity_mask_of_entries(&self, marks: &[bool]) -> Vec<bool> {
         let mut moving = vec![false; self.model.nv()];
         for (entries, velocities) in self.coupled_entry_ranges() {
             moving[velocities].fill(marks[entries].contains(&true));
@@ -104,7 +104,7 @@ impl MechanismAssembler<'_, '_> {
     /// Returns which velocities affect no constraint, at this configuration and near it. The first list has
     /// the velocities of the joints, the second the entries of `v`, which differ if generalized speeds are
     /// declared.
-    pub fn unconstrained_velocities(&self, q: &[f64]) -> [Vec<bool>; 2] {
+    pub fn unconstrained_velocity_masks(&self, q: &[f64]) -> [Vec<bool>; 2] {
         let n = self.model.nv();
         let mut unreached = [vec![true; n], vec![true; n]];
         for size in [0.0, 0.1] {

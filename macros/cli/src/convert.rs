@@ -134,7 +134,7 @@ impl<'a> ConvertedStruct<'a> {
         d.joints.iter().for_each(|joint| self.add_joint(joint));
         d.joints.iter().for_each(|joint| self.add_joint_elements(joint));
         self.add_input_fields();
-        d.drives.iter().for_each(|drive| self.add_drive(drive));
+        d.drives.iter().for_each(|drive| self.add_force_element(drive));
         for (name, e) in &d.dissipations {
             let e = self.format_expression(e);
             self.declare_named_element(
@@ -329,7 +329,7 @@ impl<'a> ConvertedStruct<'a> {
                 let on = self.joints.field_name_or_original(&joint.text);
                 let kind = motor_type(self.kind_of_joint(&joint.text));
                 self.declare_named_element(&format!("#[acts(on = {on})]"), ("input", &drive.name.text), kind);
-            } else if let Some(on) = self.drive_length_text(drive) {
+            } else if let Some(on) = self.force_element_length_text(drive) {
                 self.declare_named_element(
                     &format!("#[acts(on = {on})]"),
                     ("input", &drive.name.text),
@@ -348,7 +348,7 @@ impl<'a> ConvertedStruct<'a> {
 
     /// Returns the length or the weighted sum of coordinates that a drive acts on; `None` if it does not
     /// change with the motion, and for a drive at a point of a body.
-    fn drive_length_text(&self, drive: &FileForceElement) -> Option<String> {
+    fn force_element_length_text(&self, drive: &FileForceElement) -> Option<String> {
         match &drive.on {
             FileForceTarget::Length(length) => {
                 (!self.constant.contains(&drive.name.text)).then(|| self.format_expression(length))
@@ -449,7 +449,7 @@ impl<'a> ConvertedStruct<'a> {
     }
 
     /// Adds a spring or another element of a file. On one joint, its weight is a factor of the coefficients.
-    fn add_drive(&mut self, drive: &FileForceElement) {
+    fn add_force_element(&mut self, drive: &FileForceElement) {
         let name = drive.name.text.as_str();
         if matches!(drive.law, FileForceLaw::Input(_)) {
             return;
@@ -463,7 +463,7 @@ impl<'a> ConvertedStruct<'a> {
             }
             return;
         }
-        let Some(on) = self.drive_length_text(drive) else {
+        let Some(on) = self.force_element_length_text(drive) else {
             return self.notes.push(format!("`{name}`, which acts on a constant length, is omitted"));
         };
         // The friction law is regularised in the velocity of the weighted sum, and polynomials have several

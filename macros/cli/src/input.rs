@@ -31,7 +31,7 @@ pub struct MechanismInput {
 }
 
 /// Mechanism that was compiled without errors: source, model and generated functions.
-pub struct CompiledMechanism<'g> {
+pub struct DerivedMechanism<'g> {
     /// Parsed source of the mechanism.
     pub source: ParsedSource,
     /// Resolved model of the mechanism.
@@ -122,11 +122,11 @@ impl MechanismInput {
     }
 
     /// Returns the mechanism with its generated functions; otherwise prints the errors.
-    pub fn compile_mechanism<'g>(&self, graph: &'g Graph) -> Result<CompiledMechanism<'g>, Stop> {
+    pub fn derive_mechanism<'g>(&self, graph: &'g Graph) -> Result<DerivedMechanism<'g>, Stop> {
         let cx = &mut Diagnostics::new();
         let source = self.result_without_errors(self.parse_source(cx), cx)?;
         let (model, output) = self.result_without_errors(compile(&source, graph, cx), cx)?;
-        Ok(CompiledMechanism { source, model, output })
+        Ok(DerivedMechanism { source, model, output })
     }
 
     /// Returns the model of the mechanism, and the mechanism with machine code; otherwise prints the errors.

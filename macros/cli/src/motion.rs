@@ -338,10 +338,10 @@ impl<'a, 'g> MotionStart<'a, 'g> {
             )));
         }
         // Entries that no constraint affects remain unchanged.
-        let [apart, still] = m.unconstrained_velocities(&self.q);
+        let [apart, still] = m.unconstrained_velocity_masks(&self.q);
         let in_v: Vec<bool> = in_v.iter().zip(&still).map(|(given, still)| *given || *still).collect();
         let moving: Vec<bool> = m
-            .velocities_moving_entries(in_q)
+            .velocity_mask_of_entries(in_q)
             .iter()
             .zip(&apart)
             .map(|(given, apart)| *given || *apart)

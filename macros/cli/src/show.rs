@@ -1,7 +1,7 @@
 //! `linkwork show`: prints the compiled model of a mechanism.
 
 use crate::Stop;
-use crate::input::{CompiledMechanism, MechanismInput};
+use crate::input::{DerivedMechanism, MechanismInput};
 use clap::ArgMatches;
 use linkwork_compiler::derive::DerivationOutput;
 use linkwork_compiler::expr::Graph;
@@ -13,7 +13,7 @@ pub fn run_show(matches: &ArgMatches) -> Result<(), Stop> {
     let mut all = Vec::new();
     for input in &MechanismInput::select_mechanisms(matches)? {
         let graph = Graph::new();
-        let CompiledMechanism { source, model, output } = input.compile_mechanism(&graph)?;
+        let DerivedMechanism { source, model, output } = input.derive_mechanism(&graph)?;
         let shown =
             ShownMechanism { model: &model, output: &output, structure: source.joint_structure_lines() };
         match as_json {

@@ -40,7 +40,7 @@ fn describe_unbalanced_text(text: &str, at: LineColumn) -> (LineColumn, String, 
                     at,
                     format!(
                         "mismatched closing delimiter: expected `{}`, found `{closing}`",
-                        matching_closing_bracket(bracket)
+                        closing_bracket_character(bracket)
                     ),
                     vec![note],
                 )
@@ -50,7 +50,7 @@ fn describe_unbalanced_text(text: &str, at: LineColumn) -> (LineColumn, String, 
             let (at, opening) = find_misaligned_brace(text).map_or((at, opening), |at| (at, '{'));
             (
                 at,
-                format!("this is never closed: `{}` is missing", matching_closing_bracket(opening)),
+                format!("this is never closed: `{}` is missing", closing_bracket_character(opening)),
                 Vec::new(),
             )
         }
@@ -72,7 +72,7 @@ fn find_misaligned_brace(text: &str) -> Option<LineColumn> {
                     return None;
                 }
                 whole.push('\n');
-                whole.push(matching_closing_bracket(bracket));
+                whole.push(closing_bracket_character(bracket));
             }
         }
     };
@@ -126,7 +126,7 @@ fn previous_end_and_found_token(tokens: &TokenStream, at: LineColumn) -> (Option
 }
 
 /// Returns the closing bracket that belongs to an opening one.
-fn matching_closing_bracket(opening: char) -> char {
+fn closing_bracket_character(opening: char) -> char {
     match opening {
         '(' => ')',
         '[' => ']',

@@ -172,7 +172,7 @@ fn named_curves<'n>(
 fn declared_drawing(start: &MotionStart<'_, '_>, model: &mechanism::Model<'_>) -> Figure {
     let (mut pieces, mut numbers) = (Vec::new(), Vec::new());
     for piece in &model.drawing {
-        pieces.push(linkwork_jit::drawn(piece, numbers.len()));
+        pieces.push(linkwork_jit::convert_piece(piece, numbers.len()));
         numbers.extend(piece.numbers.iter().map(|e| start.evaluate_expression(*e)));
     }
     let frames = model.frames.iter().map(|frame| frame.name.clone()).collect();

@@ -122,7 +122,7 @@ impl Mutator<'_> {
 }
 
 /// Returns the names that a file imports from `machine`.
-fn imported_machine_limits(file: &syn::File) -> Vec<String> {
+fn names_imported_from_machine(file: &syn::File) -> Vec<String> {
     let machine_names_of_use_item = |item: &syn::Item| match item {
         syn::Item::Use(item) => {
             let text = item.tree.to_token_stream().to_string();
@@ -278,7 +278,7 @@ fn main() {
         let text = std::fs::read_to_string(&path).expect("a file of Rust");
         let mut parsed = syn::parse_file(&text).expect("Rust");
         let file = path.strip_prefix(&copy).expect("a file of the copy").to_path_buf();
-        let limits = imported_machine_limits(&parsed);
+        let limits = names_imported_from_machine(&parsed);
         let mut mutator = Mutator { file, limits, next, left_out: &left_out };
         mutator.visit_file_mut(&mut parsed);
         next = mutator.next;

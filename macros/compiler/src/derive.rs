@@ -2,13 +2,13 @@
 
 use crate::catalogue::{self, Facts};
 use crate::diag::Diagnostics;
-use crate::equations::{self, Limits, PrintedEquations, kane, linear, reduced};
+use crate::equations::{self, EquationSizeLimits, PrintedEquations, kane, linear, reduced};
 use crate::expr::Expr;
 use crate::kinematics::{self, Joint};
 use crate::lower::{Program, lower, pipeline};
 use crate::mechanics::conserved::{self, ConservedQuantity};
-use crate::mechanics::hamilton::{self, Hamilton};
-use crate::mechanics::routh::{self, Routh};
+use crate::mechanics::hamilton::{self, HamiltonEquations};
+use crate::mechanics::routh::{self, RouthEquations};
 use crate::mechanics::speeds::SpeedTransformation;
 use crate::mechanics::{self, crba, frames};
 use crate::mechanism::Model;
@@ -318,9 +318,9 @@ struct OptionalFunctionData<'a, 'g> {
     /// Row and column of each nonzero entry; present if the option `packed` is set.
     entries: Option<Vec<(usize, usize)>>,
     /// Hamilton's equations; present if the option `hamilton` is set.
-    hamilton: Option<Hamilton<'g>>,
+    hamilton: Option<HamiltonEquations<'g>>,
     /// Routh's equations; present if the option `routh` is set.
-    routh: Option<Routh<'g>>,
+    routh: Option<RouthEquations<'g>>,
     /// Conserved quantities; present if the option `conserved` is set.
     conserved: Option<Vec<ConservedQuantity<'g>>>,
 }
@@ -492,7 +492,7 @@ fn printed_equations<'g>(
         }
         // Without constraints all velocities are independent, and Kane's equations equal Lagrange's.
         EquationsOption::Lagrange | EquationsOption::Kane => {
-            let equations = equations::derive(model, joints, mass, speeds, &Limits::ASKED);
+            let equations = equations::derive(model, joints, mass, speeds, &EquationSizeLimits::ASKED);
             let named = speeds.map_or(model, |speeds| &speeds.model);
             equations.map(|e| equations::format_equations(named, &e)).or_else(|| {
                 report_unavailable_equations(
@@ -559,7 +559,8 @@ fn format_readable_equations<'g>(
     joints: &[Joint<'g>],
     mass: &crba::Matrix<'g>,
 ) -> PrintedEquations {
-    let limits = if speeds.is_some() { Limits::READABLE_IN_SPEEDS } else { Limits::READABLE };
+    let limits =
+        if speeds.is_some() { EquationSizeLimits::READABLE_IN_SPEEDS } else { EquationSizeLimits::READABLE };
     let equations = equations::derive(model, joints, mass, speeds, &limits);
     let named = speeds.map_or(model, |speeds| &speeds.model);
     let inertia_equations =

@@ -153,7 +153,7 @@ impl Diagnostics {
     }
 
     /// Creates a list that is never printed. Callers use it to test whether something is an error.
-    pub fn unprinted_diagnostics() -> Diagnostics {
+    pub fn silent_diagnostics() -> Diagnostics {
         Diagnostics { unread: true, ..Diagnostics::default() }
     }
 

@@ -218,7 +218,7 @@ impl ParsedSource {
         let mut functions = catalogue::functions_derived_before_outputs(&facts);
         for output in outline.outputs.iter().filter(|output| is_unreserved_identifier(&output.name)) {
             if output.has_contact_forces && !catalogue::has_function(&output.name, &facts) {
-                functions.push(catalogue::contact_force_function(&output.name, output.size, &facts));
+                functions.push(catalogue::contact_force_output_function(&output.name, output.size, &facts));
                 continue;
             }
             for f in catalogue::output_functions(&output.name, output.size, output.uses, &facts) {

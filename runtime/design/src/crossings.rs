@@ -77,7 +77,7 @@ impl StateSpace {
 
     /// Returns candidates that include all frequencies at which the response of a single channel is real, in
     /// ascending order. They are zeros of `G(s) − G(−s)`, or of `G(z) − G(1 / z)`.
-    pub(crate) fn real_response_frequencies(&self) -> Result<Vec<f64>, Error> {
+    pub(crate) fn candidate_real_response_frequencies(&self) -> Result<Vec<f64>, Error> {
         let (a, b, c, _) = balance_system(&self.a, &self.b, &self.c);
         let n = a.nrows();
         let size = 2 * n + 1;

@@ -84,7 +84,7 @@ impl PolynomialTerms {
         self.combine_coefficients_with(other, ErrorBoundedCoefficient::plus_coefficient)
     }
 
-    fn subtract_polynomial(&self, other: &Self) -> Self {
+    fn minus_polynomial(&self, other: &Self) -> Self {
         self.combine_coefficients_with(other, ErrorBoundedCoefficient::minus_coefficient)
     }
 
@@ -421,7 +421,7 @@ impl LoopPolynomials {
         let (n, d) = (&self.numerator, &self.denominator);
         n.odd
             .times_polynomial(&d.even)
-            .subtract_polynomial(&n.even.times_polynomial(&d.odd))
+            .minus_polynomial(&n.even.times_polynomial(&d.odd))
             .without_negligible_coefficients()
     }
 
@@ -430,7 +430,7 @@ impl LoopPolynomials {
     fn magnitude_difference_terms(&self) -> PolynomialTerms {
         self.numerator
             .squared_magnitude()
-            .subtract_polynomial(&self.denominator.squared_magnitude())
+            .minus_polynomial(&self.denominator.squared_magnitude())
             .without_negligible_coefficients()
     }
 
@@ -443,7 +443,7 @@ impl LoopPolynomials {
         );
         p.derivative_of_polynomial()
             .times_polynomial(&r)
-            .subtract_polynomial(&p.times_polynomial(&r.derivative_of_polynomial()))
+            .minus_polynomial(&p.times_polynomial(&r.derivative_of_polynomial()))
             .without_negligible_coefficients()
     }
 

@@ -214,7 +214,7 @@ impl StateSpace {
     fn margin_separating_frequencies(&self) -> Result<Vec<f64>, Error> {
         let mut points = self.pole_and_zero_frequencies()?;
         points.extend(self.frequencies_at_gain_level(1.0)?);
-        points.extend(self.real_response_frequencies()?);
+        points.extend(self.candidate_real_response_frequencies()?);
         points.extend(self.crossing_frequencies_of_factors());
         points.sort_by(f64::total_cmp);
         points.dedup_by(|a, b| *a - *b <= 1e-12 * *b);

@@ -283,7 +283,7 @@ impl ModalSum {
     }
 
     /// Whether an interval is final, so that it is not divided further.
-    fn is_final_interval(&self, interval: &BoundedInterval) -> bool {
+    fn is_indivisible_interval(&self, interval: &BoundedInterval) -> bool {
         let length = interval.to - interval.from;
         interval.simple
             || if self.sampled { length <= 1.0 } else { length <= 8.0 * f64::EPSILON * interval.to }
@@ -341,7 +341,7 @@ impl ModalSum {
             if interval.high + self.noise < level {
                 continue;
             }
-            if self.is_final_interval(&interval) {
+            if self.is_indivisible_interval(&interval) {
                 for (low, high) in self.monotone_pieces(&interval) {
                     if self.value(low) >= level {
                         return Ok(low);
@@ -372,7 +372,7 @@ impl ModalSum {
             if interval.high.max(-interval.low) + self.noise <= band {
                 continue;
             }
-            if self.is_final_interval(&interval) {
+            if self.is_indivisible_interval(&interval) {
                 for (low, high) in self.monotone_pieces(&interval).into_iter().rev() {
                     if self.value(high).abs() > band {
                         return Ok(Some(high));
@@ -408,7 +408,7 @@ impl ModalSum {
             if most <= best.1 + 2.0 * self.noise || most < reached {
                 break;
             }
-            if self.is_final_interval(&interval) {
+            if self.is_indivisible_interval(&interval) {
                 for t in self.monotone_pieces(&interval).into_iter().flat_map(|(low, high)| [low, high]) {
                     let value = sign * self.value(t);
                     if value > best.1 {

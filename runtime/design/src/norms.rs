@@ -57,7 +57,7 @@ impl StateSpace {
                 Ok(_)
                     if w.is_finite()
                         && extreme == GainExtremum::Least
-                        && !self.is_rounding_negligible(&map, w) =>
+                        && !self.is_rounding_error_negligible(&map, w) =>
                 {
                     f64::INFINITY
                 }
@@ -108,7 +108,7 @@ impl StateSpace {
     }
 
     /// Returns whether rounding changes the response of a single channel by less than a thousandth.
-    fn is_rounding_negligible(&self, map: &FrequencyMap, frequency: f64) -> bool {
+    fn is_rounding_error_negligible(&self, map: &FrequencyMap, frequency: f64) -> bool {
         map.sample_channel(stability_boundary_point(self.period, frequency))
             .is_ok_and(|sample| sample.error < 1e-3)
     }

@@ -138,7 +138,7 @@ impl VectorJacobian {
         factors: &[f64],
         out: &mut [f64],
     ) -> Result<(), Error> {
-        robot.check_parameter_values()?;
+        robot.check_no_values_missing()?;
         if !Arc::ptr_eq(&self.shared, &robot.shared) {
             return Err(Error::OtherMechanism(self.name.clone()));
         }
@@ -163,12 +163,12 @@ impl VectorJacobian {
                 let [a, b] = [arguments[0], arguments[1]];
                 match self.kind {
                     VectorJacobianMethod::Integrate => {
-                        adjoint_steps::integrate(charts, a, b, factors, first, second)
+                        adjoint_steps::add_integration_gradients(charts, a, b, factors, first, second)
                     }
                     VectorJacobianMethod::Difference => {
-                        adjoint_steps::difference(charts, [a, b], factors, [first, second])
+                        adjoint_steps::add_difference_gradients(charts, [a, b], factors, [first, second])
                     }
-                    _ => adjoint_steps::tangent_rate(charts, [a, b], factors, [first, second]),
+                    _ => adjoint_steps::add_tangent_rate_gradients(charts, [a, b], factors, [first, second]),
                 }
             }
         }
@@ -225,7 +225,7 @@ impl ReverseModeProgram {
     }
 
     /// Returns the sum of the terms, so far, of the derivative with respect to an operand.
-    fn derivative_by_operand(&mut self, operand: Operand) -> Option<Operand> {
+    fn accumulated_derivative(&mut self, operand: Operand) -> Option<Operand> {
         match operand {
             Operand::Symbol(symbol) => self.inputs.get(&symbol).copied(),
             operand => self.derivative_slot(operand).and_then(|known| *known),
@@ -250,7 +250,7 @@ impl ReverseModeProgram {
         if matches!(operand, Operand::Const(_)) {
             return;
         }
-        let sum = match self.derivative_by_operand(operand) {
+        let sum = match self.accumulated_derivative(operand) {
             None => term,
             Some(before) => self.push_instruction(Op::Add(before, term)),
         };
@@ -262,7 +262,7 @@ impl ReverseModeProgram {
         if matches!(operand, Operand::Const(_)) {
             return;
         }
-        let sum = match self.derivative_by_operand(operand) {
+        let sum = match self.accumulated_derivative(operand) {
             None => self.push_instruction(Op::Neg(term)),
             Some(before) => self.push_instruction(Op::Sub(before, term)),
         };
@@ -274,7 +274,7 @@ impl ReverseModeProgram {
         if matches!(operand, Operand::Const(_)) || a == Operand::Const(0.0) || b == Operand::Const(0.0) {
             return;
         }
-        let sum = match self.derivative_by_operand(operand) {
+        let sum = match self.accumulated_derivative(operand) {
             None => self.push_instruction(Op::Mul(a, b)),
             Some(before) => self.push_instruction(Op::MulAdd(a, b, before)),
         };
@@ -286,7 +286,7 @@ impl ReverseModeProgram {
         if matches!(operand, Operand::Const(_)) || a == Operand::Const(0.0) || b == Operand::Const(0.0) {
             return;
         }
-        let sum = match self.derivative_by_operand(operand) {
+        let sum = match self.accumulated_derivative(operand) {
             None => {
                 let product = self.push_instruction(Op::Mul(a, b));
                 self.push_instruction(Op::Neg(product))
@@ -296,7 +296,7 @@ impl ReverseModeProgram {
         self.set_derivative(operand, sum);
     }
 
-    fn call_elementary(&mut self, f: Elementary, x: Operand) -> Operand {
+    fn find_or_append_elementary_call(&mut self, f: Elementary, x: Operand) -> Operand {
         // Sines and cosines of one angle are computed once.
         let op = Op::Call(f, x);
         match self.instructions.iter().position(|known| *known == op) {
@@ -360,7 +360,7 @@ impl ReverseModeProgram {
                 let slope = self.push_instruction(Op::Mul(b, power));
                 self.add_product_to_derivative(a, factor, slope);
                 if !matches!(b, Operand::Const(_)) {
-                    let logarithm = self.call_elementary(Elementary::Ln, a);
+                    let logarithm = self.find_or_append_elementary_call(Elementary::Ln, a);
                     let slope = self.push_instruction(Op::Mul(value, logarithm));
                     self.add_product_to_derivative(b, factor, slope);
                 }
@@ -370,7 +370,7 @@ impl ReverseModeProgram {
                     Extreme::Max => self.push_instruction(Op::Sub(a, b)),
                     Extreme::Min => self.push_instruction(Op::Sub(b, a)),
                 };
-                let sign = self.call_elementary(Elementary::Signum, difference);
+                let sign = self.find_or_append_elementary_call(Elementary::Signum, difference);
                 let half = Operand::Const(0.5);
                 let of_a = self.push_instruction(Op::MulAdd(half, sign, half));
                 let of_b = self.push_instruction(Op::NegMulAdd(half, sign, half));
@@ -394,15 +394,15 @@ impl ReverseModeProgram {
     fn slope_of_elementary(&mut self, f: Elementary, x: Operand, value: Operand) -> Operand {
         let one = Operand::Const(1.0);
         match f {
-            Elementary::Sin => self.call_elementary(Elementary::Cos, x),
+            Elementary::Sin => self.find_or_append_elementary_call(Elementary::Cos, x),
             Elementary::Cos => {
-                let sine = self.call_elementary(Elementary::Sin, x);
+                let sine = self.find_or_append_elementary_call(Elementary::Sin, x);
                 self.push_instruction(Op::Neg(sine))
             }
             Elementary::Tan => self.push_instruction(Op::MulAdd(value, value, one)),
             Elementary::Asin | Elementary::Acos => {
                 let square = self.push_instruction(Op::NegMulAdd(x, x, one));
-                let root = self.call_elementary(Elementary::Sqrt, square);
+                let root = self.find_or_append_elementary_call(Elementary::Sqrt, square);
                 let sign = if f == Elementary::Asin { 1.0 } else { -1.0 };
                 self.push_instruction(Op::Div(Operand::Const(sign), root))
             }
@@ -410,17 +410,17 @@ impl ReverseModeProgram {
                 let square = self.push_instruction(Op::MulAdd(x, x, one));
                 self.push_instruction(Op::Div(one, square))
             }
-            Elementary::Sinh => self.call_elementary(Elementary::Cosh, x),
-            Elementary::Cosh => self.call_elementary(Elementary::Sinh, x),
+            Elementary::Sinh => self.find_or_append_elementary_call(Elementary::Cosh, x),
+            Elementary::Cosh => self.find_or_append_elementary_call(Elementary::Sinh, x),
             Elementary::Tanh => self.push_instruction(Op::NegMulAdd(value, value, one)),
             Elementary::Exp => value,
             Elementary::Ln => self.push_instruction(Op::Div(one, x)),
             Elementary::Sqrt => self.push_instruction(Op::Div(Operand::Const(0.5), value)),
-            Elementary::Abs => self.call_elementary(Elementary::Signum, x),
+            Elementary::Abs => self.find_or_append_elementary_call(Elementary::Signum, x),
             Elementary::Signum | Elementary::IsaLapseRate => Operand::Const(0.0),
-            Elementary::IsaTemperature => self.call_elementary(Elementary::IsaLapseRate, x),
+            Elementary::IsaTemperature => self.find_or_append_elementary_call(Elementary::IsaLapseRate, x),
             Elementary::IsaPressure => {
-                let temperature = self.call_elementary(Elementary::IsaTemperature, x);
+                let temperature = self.find_or_append_elementary_call(Elementary::IsaTemperature, x);
                 let over = self.push_instruction(Op::Div(value, temperature));
                 self.push_instruction(Op::Mul(Operand::Const(-air::FALL_OVER_GAS), over))
             }

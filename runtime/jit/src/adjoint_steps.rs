@@ -145,7 +145,7 @@ impl AdjointStepper {
         let n = v.len();
         let mut by_q = vec![0.0; q.len()];
         let mut by_displacement = vec![0.0; n];
-        integrate(
+        add_integration_gradients(
             charts,
             q,
             self.stepper.last_displacement(),
@@ -200,7 +200,7 @@ impl AdjointStepper {
             let [by_dv, by_own] = tangent_rate_derivatives(charts, &stage.displacement, &stage.v);
             add_transposed_product(&by_dv, &rates[i], &mut displacement);
             add_transposed_product(&by_own, &rates[i], &mut stage_v);
-            integrate(charts, q, &stage.displacement, &stage_q, &mut by_q, &mut displacement);
+            add_integration_gradients(charts, q, &stage.displacement, &stage_q, &mut by_q, &mut displacement);
             add(&mut by_v, &stage_v);
             let before = &self.stepper.stages[i - 1];
             by_h += STAGES[i].0
@@ -229,7 +229,7 @@ fn quaternion_from_list(list: &[f64]) -> Quaternion<f64> {
 
 /// Adds to two lists the gradients, with respect to the entries of `q` and to `dv`, of a weighted sum of the
 /// entries of `integrate(q, dv)`.
-pub(crate) fn integrate(
+pub(crate) fn add_integration_gradients(
     charts: &[Chart],
     q: &[f64],
     dv: &[f64],
@@ -283,7 +283,7 @@ fn add_configuration_gradient(charts: &[Chart], q: &[f64], displacement: &[f64],
 
 /// Adds to two lists the gradients, with respect to `from` and `to`, of a weighted sum of the entries of
 /// `difference(from, to)`.
-pub(crate) fn difference(
+pub(crate) fn add_difference_gradients(
     charts: &[Chart],
     [from, to]: [&[f64]; 2],
     factors: &[f64],
@@ -306,7 +306,7 @@ pub(crate) fn difference(
 
 /// Adds to two lists the gradients, with respect to `dv` and `v`, of a weighted sum of the entries of
 /// `tangent_rate(dv, v)`.
-pub(crate) fn tangent_rate(
+pub(crate) fn add_tangent_rate_gradients(
     charts: &[Chart],
     [dv, v]: [&[f64]; 2],
     factors: &[f64],

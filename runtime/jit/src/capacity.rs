@@ -95,7 +95,7 @@ impl Robot {
     }
 
     /// Calls a visitor with the robot and its contacts, padded to suitable array dimensions.
-    pub(crate) fn visit_contacts<V>(&self, visitor: V) -> Result<V::Output, Error>
+    pub(crate) fn visit_padded_robot_with_contacts<V>(&self, visitor: V) -> Result<V::Output, Error>
     where
         V: ContactVisitor<Output: Send> + Send,
     {

@@ -147,7 +147,7 @@ impl Code {
     /// Evaluates a program without further outputs if its arguments have these lengths. Returns false
     /// otherwise.
     #[inline]
-    pub fn call_if_lengths(
+    pub fn call_if_lengths_match(
         &self,
         parameters: &[f64],
         arguments: &[&[f64]],

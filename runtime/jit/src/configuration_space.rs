@@ -98,7 +98,7 @@ pub(crate) fn transport_velocity(charts: &[Chart], dv: &[f64], v: &[f64], out: &
 }
 
 /// Copies the linear velocities of free joints.
-pub(crate) fn translation(charts: &[Chart], dv: &[f64], out: &mut [f64]) {
+pub(crate) fn copy_linear_velocities(charts: &[Chart], dv: &[f64], out: &mut [f64]) {
     for chart in charts {
         if let Chart::Free(_, InV(v0)) = *chart {
             out[v0..v0 + 3].copy_from_slice(&dv[v0..v0 + 3]);
@@ -178,7 +178,7 @@ impl ConfigurationSpaceFunction {
     }
 
     /// Returns the indices of the functions that this function calls.
-    pub fn calls(&self) -> Vec<usize> {
+    pub fn called_function_indices(&self) -> Vec<usize> {
         self.speeds.into_iter().flatten().collect()
     }
 

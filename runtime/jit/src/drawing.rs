@@ -44,7 +44,7 @@ impl Loader {
         };
         let (mut pieces, mut numbers) = (Vec::new(), Vec::new());
         for piece in &model.drawing {
-            pieces.push(drawn(piece, numbers.len()));
+            pieces.push(convert_piece(piece, numbers.len()));
             numbers.extend(piece.numbers.iter().copied());
         }
         Ok(Drawing { pieces, numbers: lower(&numbers), heights: lower(&model.heights) })
@@ -93,7 +93,7 @@ fn evaluate_program(program: &Program, robot: &Robot, given: [f64; 2]) -> Vec<f6
 
 /// Converts a piece of the compiler's drawing to one of the runtime, whose numbers begin at index `first`.
 /// The texts in it are never freed.
-pub fn drawn(piece: &mechanism::Piece<'_>, first: usize) -> Piece {
+pub fn convert_piece(piece: &mechanism::Piece<'_>, first: usize) -> Piece {
     Piece {
         name: intern_text(&piece.name),
         role: convert_drawing_role(piece.role),

@@ -13,42 +13,46 @@ use linkwork_compiler::mechanism::{Model, Quantity, SuppliedQuantity};
 
 /// Kinematic quantity of a frame: placement, velocity, acceleration or Jacobian.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Access {
+pub(crate) enum FrameQuantity {
     Placement,
     Velocity,
     Acceleration,
     Jacobian,
 }
 
-impl Access {
+impl FrameQuantity {
     /// All kinematic quantities of a frame, in the order of their functions.
-    pub const ALL: [Access; 4] =
-        [Access::Placement, Access::Velocity, Access::Acceleration, Access::Jacobian];
+    pub const ALL: [FrameQuantity; 4] = [
+        FrameQuantity::Placement,
+        FrameQuantity::Velocity,
+        FrameQuantity::Acceleration,
+        FrameQuantity::Jacobian,
+    ];
 
     fn frame_function_name(self) -> &'static str {
         match self {
-            Access::Placement => "frame_placement",
-            Access::Velocity => "frame_velocity",
-            Access::Acceleration => "frame_acceleration",
-            Access::Jacobian => "frame_jacobian",
+            FrameQuantity::Placement => "frame_placement",
+            FrameQuantity::Velocity => "frame_velocity",
+            FrameQuantity::Acceleration => "frame_acceleration",
+            FrameQuantity::Jacobian => "frame_jacobian",
         }
     }
 
     fn frame_function_documentation(self, frame: &str) -> String {
         match self {
-            Access::Placement => format!(
+            FrameQuantity::Placement => format!(
                 "Placement of `{frame}` in the ground: the rotation matrix from the axes of the frame to \
                  those of the ground, and the position of the origin, m."
             ),
-            Access::Velocity => format!(
+            FrameQuantity::Velocity => format!(
                 "Velocity of `{frame}` relative to the ground, in ground axes: of the origin, m/s, then \
                  angular, rad/s."
             ),
-            Access::Acceleration => format!(
+            FrameQuantity::Acceleration => format!(
                 "Acceleration of `{frame}` relative to the ground, in ground axes, without gravity: of the \
                  origin, m/s², then angular, rad/s²."
             ),
-            Access::Jacobian => {
+            FrameQuantity::Jacobian => {
                 format!(
                     "Jacobian of `{frame}`: its product with `v` is the velocity of the frame, but for \
                      motions prescribed in time."
@@ -92,31 +96,34 @@ impl Frames {
     }
 
     /// Returns the functions of all frames: placement, velocity, acceleration and Jacobian of each frame.
-    pub fn entries(&self, time: bool) -> Vec<Entry> {
+    pub fn frame_function_entries(&self, time: bool) -> Vec<Entry> {
         let functions_of_frame = |frame: usize| {
-            Access::ALL.into_iter().filter_map(move |access| {
+            FrameQuantity::ALL.into_iter().filter_map(move |access| {
                 use Argument::{A, Q, T, V};
                 let state: &[Argument] = match access {
-                    Access::Placement | Access::Jacobian => &[Q],
-                    Access::Velocity => &[Q, V],
-                    Access::Acceleration => &[Q, V, A],
+                    FrameQuantity::Placement | FrameQuantity::Jacobian => &[Q],
+                    FrameQuantity::Velocity => &[Q, V],
+                    FrameQuantity::Acceleration => &[Q, V, A],
                 };
                 let arguments: Vec<Argument> =
                     time.then_some(T).into_iter().chain(state.iter().copied()).collect();
                 let result_matrix_shape = |name, rows, columns| Matrix { name, rows, columns };
                 let results = match access {
-                    Access::Placement => {
+                    FrameQuantity::Placement => {
                         vec![result_matrix_shape("rotation", 3, 3), result_matrix_shape("position", 3, 1)]
                     }
-                    Access::Jacobian => vec![result_matrix_shape("result", TWIST, self.nv)],
-                    Access::Velocity | Access::Acceleration => vec![result_matrix_shape("result", TWIST, 1)],
+                    FrameQuantity::Jacobian => vec![result_matrix_shape("result", TWIST, self.nv)],
+                    FrameQuantity::Velocity | FrameQuantity::Acceleration => {
+                        vec![result_matrix_shape("result", TWIST, 1)]
+                    }
                 };
                 let length = results.iter().map(Matrix::length).sum();
                 let routine = Routine::routine_built_on_demand(&arguments, length)?;
                 let name = &self.names[frame];
                 let plan = ResultAssembly::Frame(access, frame, routine);
                 let documentation = access.frame_function_documentation(name);
-                let rank = if matches!(access, Access::Placement | Access::Jacobian) { 2 } else { 1 };
+                let rank =
+                    if matches!(access, FrameQuantity::Placement | FrameQuantity::Jacobian) { 2 } else { 1 };
                 let name = format!("{}({name})", access.frame_function_name());
                 Some(Entry { rank, ..Entry::new(&name, documentation, arguments, results, plan) })
             })
@@ -135,7 +142,7 @@ impl Frames {
 
     /// Returns the program that computes the placements of all frames: for each frame a rotation matrix row
     /// by row, and a position.
-    pub fn placements(&self) -> Program {
+    pub fn frame_placements_program(&self) -> Program {
         let mut merged = ProgramMerger::default();
         let mut links: Vec<Option<Vec<Operand>>> = vec![None; self.links.len()];
         let mut outputs = Vec::new();
@@ -154,12 +161,12 @@ impl Frames {
     }
 
     /// Returns the program that computes a kinematic quantity of a frame.
-    pub fn program(&self, access: Access, frame: usize) -> Program {
+    pub fn program(&self, access: FrameQuantity, frame: usize) -> Program {
         let mut merged = ProgramMerger::default();
         if let Some([rates, accelerations, _]) = &self.speeds {
             // Steps are in joint velocities. Both programs take speeds: they come before the exchange.
             let accelerations = match access {
-                Access::Acceleration => merged.append_program(accelerations),
+                FrameQuantity::Acceleration => merged.append_program(accelerations),
                 _ => Vec::new(),
             };
             let rates = merged.append_program(rates);
@@ -179,29 +186,31 @@ impl Frames {
         for link in &path {
             placement = append_program_with_inputs(&mut merged, &[&placement], &link.placement);
             placements.push(placement.clone());
-            if access == Access::Acceleration {
+            if access == FrameQuantity::Acceleration {
                 acceleration =
                     append_program_with_inputs(&mut merged, &[&twist, &acceleration], &link.acceleration);
             }
-            if matches!(access, Access::Velocity | Access::Acceleration) {
+            if matches!(access, FrameQuantity::Velocity | FrameQuantity::Acceleration) {
                 twist = append_program_with_inputs(&mut merged, &[&twist], &link.twist);
             }
         }
         let steps = &self.frames[frame];
         let outputs = match access {
-            Access::Placement => {
+            FrameQuantity::Placement => {
                 let placed = append_program_with_inputs(&mut merged, &[&placement], &steps.placement);
                 // Steps have rotations row by row.
                 let rotation = (0..9).map(|k| placed[3 * (k % 3) + k / 3]);
                 rotation.chain(placed[9..].iter().copied()).collect()
             }
-            Access::Velocity => append_program_with_inputs(&mut merged, &[&placement, &twist], &steps.twist),
-            Access::Acceleration => append_program_with_inputs(
+            FrameQuantity::Velocity => {
+                append_program_with_inputs(&mut merged, &[&placement, &twist], &steps.twist)
+            }
+            FrameQuantity::Acceleration => append_program_with_inputs(
                 &mut merged,
                 &[&placement, &twist, &acceleration],
                 &steps.acceleration,
             ),
-            Access::Jacobian => {
+            FrameQuantity::Jacobian => {
                 let placed = append_program_with_inputs(&mut merged, &[&placement], &steps.placement);
                 let mut jacobian = vec![Operand::Const(0.0); TWIST * self.nv];
                 for (link, placement) in path.iter().zip(&placements) {

@@ -2,9 +2,9 @@
 
 use crate::configuration_space::ConfigurationSpaceFunction;
 use crate::constrained::ConstrainedDynamicsFunction;
-use crate::frames::Access;
+use crate::frames::FrameQuantity;
 use crate::inverse::Inverse;
-use crate::kernels::{self, Columns};
+use crate::kernels::{self, ColumnGroup};
 use crate::merge::ProgramMerger;
 use crate::polytopes::takes_features;
 use crate::routine::{Routine, Values};
@@ -61,25 +61,25 @@ pub(crate) enum ResultAssembly {
     Program(Routine),
     /// The results are the outputs of a program that is composed of the steps of links between the ground and
     /// a frame.
-    Frame(Access, usize, Routine),
+    Frame(FrameQuantity, usize, Routine),
     Inverse(Routine, Inverse),
     Forward {
         routine: Routine,
         inverse: Inverse,
-        columns: [Vec<Columns>; 2],
+        columns: [Vec<ColumnGroup>; 2],
         n: usize,
     },
-    CalledForward(Box<CalledForward>),
+    ForwardDerivativesByCalls(Box<ForwardDerivativesByCalls>),
     Linear {
         routine: Routine,
-        columns: [Vec<Columns>; 3],
+        columns: [Vec<ColumnGroup>; 3],
         n: usize,
         m: usize,
     },
     CalledLinear {
         routine: Routine,
         derivatives: usize,
-        columns: [Vec<Columns>; 3],
+        columns: [Vec<ColumnGroup>; 3],
         n: usize,
         m: usize,
     },
@@ -89,7 +89,7 @@ pub(crate) enum ResultAssembly {
 }
 
 /// Computation of the derivatives of forward dynamics by calls of other functions.
-pub(crate) struct CalledForward {
+pub(crate) struct ForwardDerivativesByCalls {
     /// Program that computes the accelerations and the data for completing the inverse mass matrix.
     accelerations: Routine,
     inverse: Inverse,
@@ -100,7 +100,7 @@ pub(crate) struct CalledForward {
     known: Routine,
     /// Index of each column that needs no matrix product, in `∂v̇/∂q`, then in `∂v̇/∂v`.
     places: Vec<usize>,
-    columns: [Vec<Columns>; 2],
+    columns: [Vec<ColumnGroup>; 2],
     n: usize,
 }
 
@@ -114,17 +114,17 @@ impl ResultAssembly {
             | ResultAssembly::Forward { routine, .. }
             | ResultAssembly::Linear { routine, .. }
             | ResultAssembly::CalledLinear { routine, .. } => vec![routine],
-            ResultAssembly::CalledForward(called) => vec![&called.accelerations, &called.known],
+            ResultAssembly::ForwardDerivativesByCalls(called) => vec![&called.accelerations, &called.known],
             ResultAssembly::ConfigurationSpaceFunction(_) | ResultAssembly::Constrained(_) => Vec::new(),
         }
     }
 
     /// Returns the indices of the functions that the plan calls.
-    pub fn calls(&self) -> Vec<usize> {
+    pub fn called_function_indices(&self) -> Vec<usize> {
         match self {
-            ResultAssembly::CalledForward(called) => vec![called.forces],
+            ResultAssembly::ForwardDerivativesByCalls(called) => vec![called.forces],
             ResultAssembly::CalledLinear { derivatives, .. } => vec![*derivatives],
-            ResultAssembly::ConfigurationSpaceFunction(space) => space.calls(),
+            ResultAssembly::ConfigurationSpaceFunction(space) => space.called_function_indices(),
             _ => Vec::new(),
         }
     }
@@ -133,7 +133,7 @@ impl ResultAssembly {
 impl Entry {
     /// Selects the entries of each argument that belong to state `k` of a batch. An argument with the entries
     /// of one state is common to all states.
-    pub fn select<'a>(&self, k: usize, arguments: &[&'a [f64]], to: &mut [&'a [f64]]) {
+    pub fn select_state_arguments<'a>(&self, k: usize, arguments: &[&'a [f64]], to: &mut [&'a [f64]]) {
         for ((to, list), length) in to.iter_mut().zip(arguments).zip(&self.lengths) {
             *to = if list.len() == *length { list } else { &list[k * length..(k + 1) * length] };
         }
@@ -168,7 +168,7 @@ impl Entry {
                 inverse.complete(matrix, more, work);
                 solve_for_acceleration_derivatives(*n, matrix, forces, columns, work);
             }
-            ResultAssembly::CalledForward(called) => {
+            ResultAssembly::ForwardDerivativesByCalls(called) => {
                 called.run_forward_dynamics_derivatives(shared, values, &self.arguments, out, work)
             }
             ResultAssembly::Linear { routine, columns, n, m } => {
@@ -180,7 +180,7 @@ impl Entry {
                 let (by_q, by_v) = forces.split_at_mut(n * n);
                 let matrices = [&mut *by_q, &mut *by_v, &mut *inputs];
                 kernels::replace_by_negative_products(*n, inverse, matrices, columns, work);
-                assemble(*n, *m, [by_q, by_v, inputs, turning], out);
+                assemble_linearized_system(*n, *m, [by_q, by_v, inputs, turning], out);
             }
             ResultAssembly::CalledLinear { routine, derivatives, columns, n, m } => {
                 let square = n * n;
@@ -197,7 +197,7 @@ impl Entry {
                 kernels::replace_by_negative_products(*n, inverse, matrices, columns, work);
                 by.iter_mut().zip(&*forces).for_each(|(by, more)| *by -= more);
                 let (by_q, by_v) = by.split_at(square);
-                assemble(*n, *m, [by_q, by_v, inputs, turning], out);
+                assemble_linearized_system(*n, *m, [by_q, by_v, inputs, turning], out);
             }
             ResultAssembly::ConfigurationSpaceFunction(space) => {
                 space.evaluate(shared, values, &self.arguments, out, work)
@@ -208,7 +208,7 @@ impl Entry {
     }
 }
 
-impl CalledForward {
+impl ForwardDerivativesByCalls {
     fn run_forward_dynamics_derivatives(
         &self,
         shared: &Shared,
@@ -242,7 +242,7 @@ fn solve_for_acceleration_derivatives(
     n: usize,
     inverse: &[f64],
     forces: &mut [f64],
-    columns: &[Vec<Columns>; 2],
+    columns: &[Vec<ColumnGroup>; 2],
     work: &mut [f64],
 ) {
     let (by_q, by_v) = forces.split_at_mut(n * n);
@@ -252,7 +252,12 @@ fn solve_for_acceleration_derivatives(
 /// Assembles the matrices `A` and `B` of a linearised system. The inputs are the derivatives of the
 /// accelerations with respect to `q` and `v`, minus those with respect to the inputs, and the matrix that
 /// multiplies the rates of displacements.
-fn assemble(n: usize, m: usize, [by_q, by_v, inputs, turning]: [&[f64]; 4], out: &mut [f64]) {
+fn assemble_linearized_system(
+    n: usize,
+    m: usize,
+    [by_q, by_v, inputs, turning]: [&[f64]; 4],
+    out: &mut [f64],
+) {
     let (state, by_input) = out.split_at_mut(4 * n * n);
     for j in 0..n {
         let (first, second) = (2 * n * j, 2 * n * (n + j));
@@ -326,7 +331,7 @@ impl CallableFunctionBuilder<'_, '_> {
         let name = self.callable_name_of_function(f)?;
         let arguments: Vec<Argument> = f.arguments.iter().copied().filter(is_passed).collect();
         let (n, m) = (self.model.nv(), self.model.nu());
-        let program = self.whole(&f.program);
+        let program = self.prepend_passive_forces(&f.program);
         let takes_features = takes_features(&program);
         let features = takes_features.then_some(Argument::Called(CalledFunction::ContactFeatures));
         let inputs: Vec<Argument> = arguments.iter().copied().chain(features).collect();
@@ -340,19 +345,19 @@ impl CallableFunctionBuilder<'_, '_> {
         // Columns of derivatives by `q`, `v` and `u` that begin at these outputs.
         let columns_by_q_v_and_u = |[q, v, u]: [usize; 3]| {
             [(n, q), (n, v), (m, u)].map(|(count, first)| {
-                Columns::group(n, &(0..count).collect::<Vec<_>>(), zero_entry_predicate(first))
+                ColumnGroup::group_columns(n, &(0..count).collect::<Vec<_>>(), zero_entry_predicate(first))
             })
         };
         let (plan, work) = match f.shape {
             Shape::Inverse(_) => {
                 let inverse = inverse_assembly_of_function();
-                let work = inverse.output_count_after_columns() + inverse.work();
+                let work = inverse.output_count_after_columns() + inverse.work_space_size();
                 (ResultAssembly::Inverse(routine_with_result_count(n * n)?, inverse), work)
             }
             Shape::Forward(_) => {
                 let inverse = inverse_assembly_of_function();
-                let work =
-                    inverse.output_count_after_columns() + inverse.work().max(kernels::work_space_size(n));
+                let work = inverse.output_count_after_columns()
+                    + inverse.work_space_size().max(kernels::work_space_size(n));
                 let columns = self.columns_multiplied_by_inverse(f, &zero_entry_predicate(0));
                 // The accelerations, which come last, have a function of their own.
                 let kept: Vec<usize> = (0..3 * n * n + inverse.output_count_after_columns()).collect();
@@ -360,7 +365,7 @@ impl CallableFunctionBuilder<'_, '_> {
                 (ResultAssembly::Forward { routine, inverse, columns, n }, work)
             }
             Shape::Accelerated(_) | Shape::Symmetric(_) => return None,
-            Shape::CalledForward(_) => {
+            Shape::ForwardDerivativesByCalls(_) => {
                 let accelerations = self.find_function(GeneratedId::AccelerationsAndInverse)?;
                 let inverse = Inverse::new(&accelerations.structure.inverse, n);
                 let forces = self.index("inverse_dynamics_derivatives")?;
@@ -368,11 +373,15 @@ impl CallableFunctionBuilder<'_, '_> {
                 let places: Vec<usize> =
                     known.flat_map(|(known, first)| known.iter().map(move |k| first + k)).collect();
                 let columns = self.columns_multiplied_by_inverse(f, &|_, _| false);
-                let rest = inverse.work().max(kernels::work_space_size(n)).max(n * places.len());
+                let rest = inverse.work_space_size().max(kernels::work_space_size(n)).max(n * places.len());
                 let work =
                     n + n * n + inverse.output_count_after_columns() + rest.max(self.entries[forces].work);
-                let called = CalledForward {
-                    accelerations: Routine::new(self.whole(&accelerations.program), &arguments, n)?,
+                let called = ForwardDerivativesByCalls {
+                    accelerations: Routine::new(
+                        self.prepend_passive_forces(&accelerations.program),
+                        &arguments,
+                        n,
+                    )?,
                     inverse,
                     forces,
                     known: routine_with_result_count(outputs)?,
@@ -380,7 +389,7 @@ impl CallableFunctionBuilder<'_, '_> {
                     columns,
                     n,
                 };
-                (ResultAssembly::CalledForward(Box::new(called)), work)
+                (ResultAssembly::ForwardDerivativesByCalls(Box::new(called)), work)
             }
             Shape::Linear(..) => {
                 let columns = columns_by_q_v_and_u([0, n * n, 3 * n * n]);
@@ -422,13 +431,13 @@ impl CallableFunctionBuilder<'_, '_> {
         &self,
         f: &derive::Function,
         is_zero: &dyn Fn(usize, usize) -> bool,
-    ) -> [Vec<Columns>; 2] {
+    ) -> [Vec<ColumnGroup>; 2] {
         let n = self.model.nv();
         let zeros = &f.structure.zeros;
         [0, 1].map(|k| {
             let known = &f.structure.known[k];
             let columns: Vec<usize> = (0..n).filter(|j| !known.contains(j)).collect();
-            Columns::group(n, &columns, |j, i| match zeros.get((k * n + j) * n + i) {
+            ColumnGroup::group_columns(n, &columns, |j, i| match zeros.get((k * n + j) * n + i) {
                 Some(zero) => *zero,
                 None => is_zero(k * n + j, i),
             })
@@ -437,7 +446,7 @@ impl CallableFunctionBuilder<'_, '_> {
 
     /// Returns a program preceded by the programs of the passive forces that it uses. A program without them
     /// keeps its variant with lanes.
-    pub fn whole(&self, program: &Program) -> Program {
+    pub fn prepend_passive_forces(&self, program: &Program) -> Program {
         let symbols = program.used_symbols();
         let takes_called_argument = |called: CalledFunction| {
             symbols.iter().any(|symbol| {
@@ -475,14 +484,15 @@ impl CallableFunctionBuilder<'_, '_> {
         let inputs = self.find_function(GeneratedId::GeneralizedForces).filter(|_| self.model.nu() > 0);
         let n = self.model.nv();
         let tau = match inputs {
-            Some(f) => merged.append_program(&self.whole(&f.program)),
+            Some(f) => merged.append_program(&self.prepend_passive_forces(&f.program)),
             None => vec![Operand::Const(0.0); n],
         };
         (0..n).zip(tau).for_each(|(k, tau)| merged.bind_symbol(Quantity::Force(k).symbol(), tau));
-        let a =
-            merged.append_program(&self.whole(&self.find_function(GeneratedId::ForwardDynamics)?.program));
+        let a = merged.append_program(
+            &self.prepend_passive_forces(&self.find_function(GeneratedId::ForwardDynamics)?.program),
+        );
         (0..n).zip(a).for_each(|(k, a)| merged.bind_symbol(Quantity::Acceleration(k).symbol(), a));
-        let outputs = merged.append_program(&self.whole(&f.program));
+        let outputs = merged.append_program(&self.prepend_passive_forces(&f.program));
         let time = self.model.time.then_some(Argument::T);
         let u = (self.model.nu() > 0).then_some(Argument::U);
         let arguments: Vec<Argument> = time.into_iter().chain([Argument::Q, Argument::V]).chain(u).collect();

@@ -68,7 +68,7 @@ impl Robot {
         u: &[f64],
         preferred: &[usize],
     ) -> Result<IndependentMotion, Error> {
-        self.check_parameter_values()?;
+        self.check_no_values_missing()?;
         let lists = [("q", self.nq(), q.len()), ("v", self.nv(), v.len()), ("u", self.nu(), u.len())];
         lists.into_iter().try_for_each(|(name, expected, found)| self.check_length(name, expected, found))?;
         if self.shared.constraints.names.is_empty() {

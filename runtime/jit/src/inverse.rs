@@ -31,7 +31,7 @@ impl Inverse {
     }
 
     /// Returns the number of workspace values that operations with the inverse mass matrix need.
-    pub fn work(&self) -> usize {
+    pub fn work_space_size(&self) -> usize {
         let width = self.trunk.len();
         self.n * width + width * width + 2 * self.n
     }
@@ -217,7 +217,7 @@ mod tests {
         let mass = [4.0, 1.0, 2.0, 1.0, 2.0, 0.0, 2.0, 0.0, 5.0];
         let mut matrix = [0.0, 0.0, 0.0, 0.0, 0.5, 0.0, 0.0, 0.0, 0.2];
         let borders = [4.0, 1.0, 2.0];
-        let mut work = vec![0.0; inverse.work()];
+        let mut work = vec![0.0; inverse.work_space_size()];
         inverse.complete(&mut matrix, &borders, &mut work);
         for j in 0..3 {
             for i in 0..3 {

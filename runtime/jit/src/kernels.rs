@@ -46,19 +46,23 @@ pub(crate) fn run_kernel(n: usize, kernel: impl Kernel) {
 }
 
 /// Group of matrix columns that are multiplied together, with the rows in which they can be nonzero.
-pub(crate) struct Columns {
+pub(crate) struct ColumnGroup {
     /// Indices of the columns in the group, at most [`Columns::MOST`].
     pub columns: Vec<usize>,
     /// Rows that can be nonzero in at least one column of the group.
     pub rows: Vec<usize>,
 }
 
-impl Columns {
+impl ColumnGroup {
     const MOST: usize = 4;
 
     /// Groups columns of a matrix of `n` rows, according to a predicate of column and row for zero entries.
-    pub fn group(n: usize, columns: &[usize], is_zero: impl Fn(usize, usize) -> bool) -> Vec<Columns> {
-        let groups = columns.chunks(Columns::MOST).map(|columns| Columns {
+    pub fn group_columns(
+        n: usize,
+        columns: &[usize],
+        is_zero: impl Fn(usize, usize) -> bool,
+    ) -> Vec<ColumnGroup> {
+        let groups = columns.chunks(ColumnGroup::MOST).map(|columns| ColumnGroup {
             columns: columns.to_vec(),
             rows: (0..n).filter(|i| columns.iter().any(|j| !is_zero(*j, *i))).collect(),
         });
@@ -90,7 +94,7 @@ pub(crate) fn add_multiple(
 
 /// Returns the number of workspace values that products of matrices with `n` rows need.
 pub(crate) fn work_space_size(n: usize) -> usize {
-    Columns::MOST * n
+    ColumnGroup::MOST * n
 }
 
 /// Replaces the given columns of each matrix by minus their products with a square matrix of `n` rows. All
@@ -99,13 +103,15 @@ pub(crate) fn replace_by_negative_products<const K: usize>(
     n: usize,
     square: &[f64],
     matrices: [&mut [f64]; K],
-    columns: &[Vec<Columns>; K],
+    columns: &[Vec<ColumnGroup>; K],
     work: &mut [f64],
 ) {
     #[cfg(target_arch = "x86_64")]
     if n > ROWS && std::arch::is_x86_feature_detected!("avx512f") {
         // SAFETY: the processor has the feature.
-        return unsafe { registers::multiply(n, square, matrices, columns, work) };
+        return unsafe {
+            registers::replace_columns_by_negative_products(n, square, matrices, columns, work)
+        };
     }
     run_kernel(n, Products { n, square, matrices, columns, work });
 }
@@ -114,7 +120,7 @@ struct Products<'a, const K: usize> {
     n: usize,
     square: &'a [f64],
     matrices: [&'a mut [f64]; K],
-    columns: &'a [Vec<Columns>; K],
+    columns: &'a [Vec<ColumnGroup>; K],
     work: &'a mut [f64],
 }
 
@@ -151,7 +157,7 @@ impl<const K: usize> Kernel for Products<'_, K> {
 fn replace_by_fixed_size_products<'a, const N: usize>(
     square: &[f64],
     matrices: impl IntoIterator<Item = &'a mut [f64]>,
-    columns: &[Vec<Columns>],
+    columns: &[Vec<ColumnGroup>],
     mul_add: impl Fn(f64, f64, f64) -> f64 + Copy,
 ) {
     let (square, _) = square.as_chunks::<N>();
@@ -177,7 +183,7 @@ fn multiply_in_tiles<const M: usize>(
     n: usize,
     square: &[f64],
     matrix: &mut [f64],
-    group: &Columns,
+    group: &ColumnGroup,
     work: &mut [f64],
     mul_add: impl Fn(f64, f64, f64) -> f64 + Copy,
 ) {
@@ -229,7 +235,7 @@ mod tests {
             };
             let (mut first, mut second) = (test_matrix(1), test_matrix(2));
             let columns: Vec<usize> = (0..n).filter(|j| j % 7 != 3).collect();
-            let groups = [1, 2].map(|_| Columns::group(n, &columns, is_zero));
+            let groups = [1, 2].map(|_| ColumnGroup::group_columns(n, &columns, is_zero));
             let mut work = vec![f64::NAN; work_space_size(n)];
             replace_by_negative_products(n, &square, [&mut first, &mut second], &groups, &mut work);
             for (which, found) in [(1, first), (2, second)] {

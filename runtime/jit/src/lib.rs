@@ -40,7 +40,7 @@ pub use adjoint::VectorJacobian;
 pub use adjoint_steps::{AdjointStepper, Sensitivity};
 pub use drawing::Drawing;
 #[doc(hidden)]
-pub use drawing::drawn;
+pub use drawing::convert_piece;
 pub use error::Error;
 pub use functions::Matrix;
 pub use independent::IndependentMotion;

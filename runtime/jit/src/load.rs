@@ -10,7 +10,7 @@ use crate::internal::INTERNAL;
 use crate::methods::METHODS;
 use crate::polytopes::Polytopes;
 use crate::robot::Robot;
-use crate::shared::{Constraints, Contact, FirstOrder, ParameterRequirement, Quantity, Shared, Sizes};
+use crate::shared::{Constraints, Contact, FirstOrderState, ParameterRequirement, Quantity, Shared, Sizes};
 use linkwork::__private::Rule;
 use linkwork_compiler::diag::{Diagnostic, Diagnostics};
 use linkwork_compiler::expr::Graph;
@@ -305,7 +305,7 @@ fn extract_shared_data(
     maker.add_derived_functions();
     ConfigurationSpaceFunction::add(&mut maker);
     constrained::add(&mut maker);
-    maker.entries.extend(frames.entries(model.time));
+    maker.entries.extend(frames.frame_function_entries(model.time));
     let (mut entries, sizes) = (maker.entries, Sizes { nq: model.nq(), nv: model.nv(), nu: model.nu() });
     for entry in &mut entries {
         entry.lengths = entry.arguments.iter().map(|argument| sizes.length(*argument)).collect();
@@ -322,7 +322,7 @@ fn extract_shared_data(
             .map(|(k, name)| Quantity { name: name.clone(), unit: unit_of_quantity(k) })
             .collect::<Vec<_>>()
     };
-    let states = source.mechanism.description.states.iter().map(|(name, parameter)| FirstOrder {
+    let states = source.mechanism.description.states.iter().map(|(name, parameter)| FirstOrderState {
         parameter: *parameter,
         rate: index.get(&format!("{}{RATE_OF_STATE}", name.text)).copied(),
     });
@@ -382,7 +382,7 @@ fn constraint_data_of_model(model: &Model<'_>) -> Constraints {
         determining: matching_constraint_indices(|constraint| constraint.determines),
         rank: model.nv().saturating_sub(model.freedom.velocities),
         freedom: [model.freedom.coordinates, model.freedom.velocities],
-        overdetermined: model.is_overconstrained(),
+        overdetermined: model.has_unpruned_redundancy(),
         independent: model.dependent.is_some(),
         angles: (0..model.nq()).filter(|k| model.units.configuration[*k] == "rad").collect(),
     }

@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector, Isometry3, Matrix3, Rotation3, Translation3, Ve
 impl Robot {
     /// Returns the index of the function that a method of [`Robot`] calls, or an error if the robot has
     /// no such function.
-    fn index_of(&self, method: Method) -> Result<usize, Error> {
+    fn function_index_of_method(&self, method: Method) -> Result<usize, Error> {
         let name = METHODS[method as usize];
         let index = self.shared.methods[method as usize];
         index.ok_or_else(|| Error::unknown_name_error("function", name, self.shared.names()))
@@ -20,7 +20,7 @@ impl Robot {
     }
 
     fn vector_of_method(&self, method: Method, state: State<'_>) -> Result<DVector<f64>, Error> {
-        self.call_function_at_state(self.index_of(method)?, state).map(DVector::from_vec)
+        self.call_function_at_state(self.function_index_of_method(method)?, state).map(DVector::from_vec)
     }
 
     fn matrices_of_function<const N: usize>(
@@ -144,7 +144,7 @@ macro_rules! methods {
                 #[doc = concat!("As [`", stringify!($name), "`](Self::", stringify!($name), ").")]
                 pub fn $into(&self, $($argument: &[f64],)* out: &mut [f64]) -> Result<(), Error> {
                     self.call_with_state_into(
-                        self.index_of(Method::$name)?, methods!(@state $($argument)*), out,
+                        self.function_index_of_method(Method::$name)?, methods!(@state $($argument)*), out,
                     )
                 }
             )*
@@ -157,16 +157,16 @@ macro_rules! methods {
     (@type three) => { Result<[DMatrix<f64>; 3], Error> };
     (@body scalar $self:ident $name:ident $state:ident) => {{
         let mut value = [0.0];
-        $self.call_with_state_into($self.index_of(Method::$name)?, $state, &mut value)?;
+        $self.call_with_state_into($self.function_index_of_method(Method::$name)?, $state, &mut value)?;
         Ok(value[0])
     }};
     (@body vector $self:ident $name:ident $state:ident) => { $self.vector_of_method(Method::$name, $state) };
     (@body matrix $self:ident $name:ident $state:ident) => {{
-        let [matrix] = $self.matrices_of_function($self.index_of(Method::$name)?, $state)?;
+        let [matrix] = $self.matrices_of_function($self.function_index_of_method(Method::$name)?, $state)?;
         Ok(matrix)
     }};
     (@body $some:ident $self:ident $name:ident $state:ident) => {
-        $self.matrices_of_function($self.index_of(Method::$name)?, $state)
+        $self.matrices_of_function($self.function_index_of_method(Method::$name)?, $state)
     };
 }
 
@@ -223,7 +223,7 @@ macro_rules! others {
                 ///
                 #[doc = concat!("As [`", stringify!($name), "`](Self::", stringify!($name), ").")]
                 pub fn $into(&self, $($argument: &[f64],)* out: &mut [f64]) -> Result<(), Error> {
-                    self.call_with_state_into(self.index_of(Method::$name)?, $state, out)
+                    self.call_with_state_into(self.function_index_of_method(Method::$name)?, $state, out)
                 }
             )*
         }

@@ -17,9 +17,9 @@ pub(crate) enum NameListKind {
 const COUNT: usize = 1000;
 /// Number of digits of each placeholder number.
 const DIGITS: usize = 4;
-const TABLE: &[[u8; DIGITS]; 5 * COUNT] = &digit_table();
+const TABLE: &[[u8; DIGITS]; 5 * COUNT] = &placeholder_digits();
 
-const fn digit_table() -> [[u8; DIGITS]; 5 * COUNT] {
+const fn placeholder_digits() -> [[u8; DIGITS]; 5 * COUNT] {
     let mut all = [[0; DIGITS]; 5 * COUNT];
     let mut k = 0;
     while k < all.len() {

@@ -19,7 +19,7 @@ impl Code {
     }
 
     /// Evaluates the program if arguments have the right lengths. It is never called.
-    pub fn call_if_lengths(
+    pub fn call_if_lengths_match(
         &self,
         _: &[f64],
         _: &[&[f64]],

@@ -348,7 +348,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Hooks<
     fn translation(&self, _t: f64, dv: &SVector<f64, NV>) -> SVector<f64, NV> {
         let mut out = SVector::<f64, NV>::zeros();
         if !self.robot().shared.has_speeds {
-            crate::configuration_space::translation(
+            crate::configuration_space::copy_linear_velocities(
                 &self.robot().shared.charts,
                 dv.as_slice(),
                 out.as_mut_slice(),

@@ -98,7 +98,7 @@ impl Function {
     /// Generates the machine code of the function now instead of at the first call. Returns false if the
     /// function is interpreted: on processors without code generator, and if the code would be too long.
     pub fn compile(&self) -> bool {
-        self.shared.prepare(self.index)
+        self.shared.compile_with_called_functions(self.index)
     }
 }
 
@@ -332,7 +332,7 @@ impl Robot {
     ///
     /// The first value that none can have.
     pub fn validate(&self) -> Result<(), Error> {
-        self.check_parameter_values()?;
+        self.check_no_values_missing()?;
         let Some(index) = self.shared.index.get("figures") else { return Ok(()) };
         let values = self.call_function_at_state(*index, State::default())?;
         let mut rest = values.as_slice();
@@ -433,7 +433,7 @@ impl Robot {
         }
         let mut lists: [&[f64]; Layout::MOST] = [&[]; Layout::MOST];
         (0..count).try_for_each(|k| {
-            entry.select(k, arguments, &mut lists);
+            entry.select_state_arguments(k, arguments, &mut lists);
             let out = &mut out[k * entry.length..(k + 1) * entry.length];
             self.run_entry(entry, &self.parameters, &lists[..arguments.len()], out)
         })
@@ -464,7 +464,7 @@ impl Robot {
             && self.missing == 0
             && !self.interpreted
             && !entry.takes_features
-            && code.call_if_lengths(parameters, arguments, &entry.lengths, &self.tables, out)
+            && code.call_if_lengths_match(parameters, arguments, &entry.lengths, &self.tables, out)
         {
             return Ok(());
         }
@@ -515,7 +515,7 @@ impl Robot {
     /// Returns the error for a call with missing values, or with arguments or results of the wrong length.
     #[cold]
     fn call_error(&self, entry: &Entry, count: usize, arguments: &[&[f64]], out: usize) -> Error {
-        let missing = self.check_parameter_values().err();
+        let missing = self.check_no_values_missing().err();
         missing.unwrap_or_else(|| argument_length_error(entry, count, arguments, out))
     }
 
@@ -567,7 +567,7 @@ impl Robot {
         }
     }
 
-    pub(crate) fn check_parameter_values(&self) -> Result<(), Error> {
+    pub(crate) fn check_no_values_missing(&self) -> Result<(), Error> {
         if self.missing == 0 {
             return Ok(());
         }

@@ -56,7 +56,7 @@ impl Routine {
 
     /// Generates the machine code of the routine at the first call. Returns false if the program is
     /// interpreted.
-    pub fn prepare(&self) -> bool {
+    pub fn compile_once(&self) -> bool {
         let compile_program = || Code::compile(self.program.get()?, &self.layout, self.results).ok();
         self.code.get_or_init(compile_program).is_some()
     }
@@ -82,7 +82,7 @@ impl Routine {
     /// Evaluates a program that is interpreted or that has no machine code yet.
     #[cold]
     fn compile_and_run_or_interpret(&self, values: Values<'_>, results: &mut [f64], more: &mut [f64]) {
-        match !values.interpreted && self.prepare() {
+        match !values.interpreted && self.compile_once() {
             true => self.run(values, results, more),
             false => self.interpret_program(values, results, more),
         }

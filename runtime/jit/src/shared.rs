@@ -82,7 +82,7 @@ pub(crate) struct Contact {
 }
 
 /// First-order state of a loaded mechanism.
-pub(crate) struct FirstOrder {
+pub(crate) struct FirstOrderState {
     /// Index of the state among the parameters.
     pub parameter: usize,
     /// Index of the function that returns the rate of the state; `None` if it has none.
@@ -117,7 +117,7 @@ pub(crate) struct Shared {
     /// Number of contact velocities of all contacts.
     pub contact_rates: usize,
     pub polytopes: Polytopes,
-    pub states: Vec<FirstOrder>,
+    pub states: Vec<FirstOrderState>,
     pub charts: Vec<Chart>,
     pub frames: Frames,
     pub entries: Vec<Entry>,
@@ -162,13 +162,17 @@ impl Shared {
 
     /// Compiles a function and the functions that it calls to machine code. Returns false if one of them is
     /// interpreted.
-    pub fn prepare(&self, function: usize) -> bool {
+    pub fn compile_with_called_functions(&self, function: usize) -> bool {
         let plan = &self.entries[function].plan;
         // All are prepared, whether one before is interpreted or not.
-        let interpreted = plan.calls().into_iter().filter(|k| !self.prepare(*k)).count();
+        let interpreted = plan
+            .called_function_indices()
+            .into_iter()
+            .filter(|k| !self.compile_with_called_functions(*k))
+            .count();
         if let crate::functions::ResultAssembly::Frame(access, frame, routine) = plan {
             routine.build_program_once(|| self.frames.program(*access, *frame));
         }
-        interpreted + plan.routines().into_iter().filter(|routine| !routine.prepare()).count() == 0
+        interpreted + plan.routines().into_iter().filter(|routine| !routine.compile_once()).count() == 0
     }
 }

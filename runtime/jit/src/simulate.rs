@@ -303,7 +303,7 @@ impl<'a, 'i> Simulation<'a, 'i> {
         let simulate_padded_robot = || {
             let moving = SimulationVisitor { driver: &mut driver, q: &q, v: &v };
             match is_contact_method && with_contacts {
-                true => robot.visit_contacts(moving)?,
+                true => robot.visit_padded_robot_with_contacts(moving)?,
                 false => robot.visit_padded_robot(moving)?,
             }
         };

@@ -93,7 +93,7 @@ impl Stepper {
         if let Some(reason) = robot.shared.step_obstacle() {
             return Err(Error::Value(format!("`{}` has no steps: {reason}", robot.name())));
         }
-        robot.check_parameter_values()?;
+        robot.check_no_values_missing()?;
         let function_index = |name: &str| robot.shared.index.get(name).copied();
         let required_function_index = |name: &str| {
             function_index(name)
@@ -404,7 +404,7 @@ impl Robot {
     ///
     /// The slice has the wrong length, or the mechanism has generalized speeds.
     pub fn integrate_derivatives(&self, dv: &[f64]) -> Result<[DMatrix<f64>; 2], Error> {
-        self.check_joint_velocity(dv)?;
+        self.check_joint_velocity_argument(dv)?;
         Ok(integrate_derivatives(&self.shared.charts, dv))
     }
 
@@ -414,12 +414,12 @@ impl Robot {
     ///
     /// A slice has the wrong length, or the mechanism has generalized speeds.
     pub fn tangent_rate_derivatives(&self, dv: &[f64], v: &[f64]) -> Result<[DMatrix<f64>; 2], Error> {
-        self.check_joint_velocity(dv)?;
-        self.check_joint_velocity(v)?;
+        self.check_joint_velocity_argument(dv)?;
+        self.check_joint_velocity_argument(v)?;
         Ok(tangent_rate_derivatives(&self.shared.charts, dv, v))
     }
 
-    fn check_joint_velocity(&self, dv: &[f64]) -> Result<(), Error> {
+    fn check_joint_velocity_argument(&self, dv: &[f64]) -> Result<(), Error> {
         if self.shared.has_speeds {
             return Err(Error::Value(format!("the velocities of `{}` are generalized speeds", self.name())));
         }

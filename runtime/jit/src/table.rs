@@ -82,12 +82,12 @@ impl AnyTable {
     }
 
     /// Returns the grid and the values of the table; `None` for a missing table.
-    pub(crate) fn grid(&self) -> Option<Grid<'_>> {
+    pub(crate) fn grid(&self) -> Option<TableData<'_>> {
         match self {
             AnyTable::Missing => None,
-            AnyTable::One(table) => Some(Grid::new(table)),
-            AnyTable::Two(table) => Some(Grid::new(table)),
-            AnyTable::Three(table) => Some(Grid::new(table)),
+            AnyTable::One(table) => Some(TableData::new(table)),
+            AnyTable::Two(table) => Some(TableData::new(table)),
+            AnyTable::Three(table) => Some(TableData::new(table)),
         }
     }
 
@@ -103,7 +103,7 @@ impl AnyTable {
 }
 
 /// Grid and values of a table with any number of variables.
-pub(crate) struct Grid<'a> {
+pub(crate) struct TableData<'a> {
     /// Points of each axis.
     pub axes: Vec<&'a [f64]>,
     /// Values in the order of the grid points, with the last axis varying fastest.
@@ -114,9 +114,9 @@ pub(crate) struct Grid<'a> {
     pub is_extrapolated: bool,
 }
 
-impl<'a> Grid<'a> {
-    fn new<const N: usize>(table: &'a Table<N, Arc<[f64]>>) -> Grid<'a> {
-        Grid {
+impl<'a> TableData<'a> {
+    fn new<const N: usize>(table: &'a Table<N, Arc<[f64]>>) -> TableData<'a> {
+        TableData {
             axes: table.axes().iter().map(|axis| &**axis).collect(),
             values: table.values(),
             is_smooth: table.is_smooth(),

@@ -7,7 +7,7 @@ use crate::functions::{Entry, ResultAssembly};
 use crate::layout::Layout;
 use crate::robot::Robot;
 use crate::shared::Quantity;
-use crate::table::{AnyTable, Grid};
+use crate::table::{AnyTable, TableData};
 use linkwork_compiler::catalogue::Argument;
 use linkwork_compiler::lower::Program;
 use linkwork_compiler::mechanism::{Chart, InQ, InV};
@@ -142,7 +142,7 @@ impl Robot {
         }
         let time = shared.time.then_some(Argument::T);
         let arguments: Vec<Argument> = time.into_iter().chain([Argument::Q]).collect();
-        written.add(self, "placements", &shared.frames.placements(), &arguments)?;
+        written.add(self, "placements", &shared.frames.frame_placements_program(), &arguments)?;
         written.add(self, "drawing", drawing, &[])?;
         Ok(written)
     }
@@ -195,7 +195,7 @@ impl Robot {
 }
 
 /// Returns a table as JSON: axes, values, and whether it is smooth and extrapolated.
-fn table_json(grid: Grid<'_>) -> String {
+fn table_json(grid: TableData<'_>) -> String {
     let axes = json_list(grid.axes.iter().map(|axis| json_numbers(axis)));
     let values = json_numbers(grid.values);
     format!("[{axes},{values},{},{}]", grid.is_smooth, grid.is_extrapolated)

@@ -53,17 +53,17 @@ macro_rules! evaluations {
 impl<M, const L: usize> Lanewise<'_, M, L> {
     evaluations! {
         /// Computes configurations `q ⊕ dv` for many states ([`Mechanism::integrate`]).
-        integrate_all = integrate[](q: NQ, dv: NV) -> result: NQ x 1, vector_result;
+        integrate_all = integrate[](q: NQ, dv: NV) -> result: NQ x 1, unchanged_matrix;
         /// Computes mass matrices ([`Mechanism::mass_matrix`]), `NV²` entries: (i, j) is entry `j NV + i`.
-        mass_matrix_all = mass_matrix[t](q: NQ) -> mass: NV x NV, vector_result;
+        mass_matrix_all = mass_matrix[t](q: NQ) -> mass: NV x NV, unchanged_matrix;
         /// Computes bias forces for many states ([`Mechanism::bias_forces`]).
-        bias_forces_all = bias_forces[t](q: NQ, v: NV) -> h: NV x 1, vector_result;
+        bias_forces_all = bias_forces[t](q: NQ, v: NV) -> h: NV x 1, unchanged_matrix;
         /// Computes inverse dynamics for many states ([`Mechanism::inverse_dynamics`]).
-        inverse_dynamics_all = inverse_dynamics[t](q: NQ, v: NV, a: NV) -> tau: NV x 1, vector_result;
+        inverse_dynamics_all = inverse_dynamics[t](q: NQ, v: NV, a: NV) -> tau: NV x 1, unchanged_matrix;
         /// Computes forward dynamics for many states ([`Mechanism::forward_dynamics`]).
-        forward_dynamics_all = forward_dynamics[t](q: NQ, v: NV, tau: NV) -> a: NV x 1, vector_result;
+        forward_dynamics_all = forward_dynamics[t](q: NQ, v: NV, tau: NV) -> a: NV x 1, unchanged_matrix;
         /// Computes generalized forces of inputs for many states ([`Mechanism::generalized_forces`]).
-        generalized_forces_all = generalized_forces[t](q: NQ, v: NV, u: NU) -> tau: NV x 1, vector_result;
+        generalized_forces_all = generalized_forces[t](q: NQ, v: NV, u: NU) -> tau: NV x 1, unchanged_matrix;
         /// Computes kinetic energies for many states ([`Mechanism::kinetic_energy`]), one number per state.
         kinetic_energy_all = kinetic_energy[t](q: NQ, v: NV) -> energy: 1 x 1, scalar_as_matrix;
         /// Computes potential energies for many states ([`Mechanism::potential_energy`]), one number per
@@ -73,7 +73,7 @@ impl<M, const L: usize> Lanewise<'_, M, L> {
 }
 
 #[inline(always)]
-fn vector_result<T>(values: T) -> T {
+fn unchanged_matrix<T>(values: T) -> T {
     values
 }
 

@@ -1,4 +1,4 @@
-//! Products of matrices in SIMD registers, of which compilers make several hundred instructions for each size.
+//! Products of matrices in SIMD registers: several hundred instructions for each size of matrices.
 
 use super::small;
 use crate::Real;

@@ -1,8 +1,10 @@
 //! Tests that compare matrix products and solutions with those of nalgebra, for all register widths and
 //! numbers of remaining rows.
 
+use super::registers::MatrixProduct;
 use super::solve::SymmetricSystem;
 use super::*;
+use crate::arithmetic::dispatch::Evaluate;
 use crate::multiplication::testing::pseudorandom_matrix;
 
 /// Checks the product of a matrix of `R` rows that is added to another matrix, and solutions of linear

@@ -118,7 +118,9 @@ impl<T: Real, const NV: usize, const NC: usize, const NU: usize> Motion<'_, T, N
     ) -> Result<Linearization<T, NX, NU, NP, NS>, ConstraintError> {
         let [positions, speeds] = self.dependent_entry_solutions();
         match positions.independent_count() == NP && speeds.independent_count() == NS {
-            true => Ok(self.assemble(&self.independent_blocks_for(&positions, &speeds))),
+            true => {
+                Ok(self.assemble_linearization(&self.independent_blocks_from_solutions(&positions, &speeds)))
+            }
             false => Err(ConstraintError::Singular),
         }
     }
@@ -128,7 +130,7 @@ impl<T: Real, const NV: usize, const NC: usize, const NU: usize> Motion<'_, T, N
     /// them are [`usize::MAX`].
     pub fn independent_blocks(&self) -> IndependentBlocks<T, NV, NV, NV> {
         let [positions, speeds] = self.dependent_entry_solutions();
-        self.independent_blocks_for(&positions, &speeds)
+        self.independent_blocks_from_solutions(&positions, &speeds)
     }
 
     /// Returns the solutions of the constraints for the dependent coordinates and speeds.
@@ -143,7 +145,7 @@ impl<T: Real, const NV: usize, const NC: usize, const NU: usize> Motion<'_, T, N
         ]
     }
 
-    fn independent_blocks_for<const NP: usize, const NS: usize>(
+    fn independent_blocks_from_solutions<const NP: usize, const NS: usize>(
         &self,
         positions: &DependentEntrySolution<T, NV, NC>,
         speeds: &DependentEntrySolution<T, NV, NC>,
@@ -162,7 +164,7 @@ impl<T: Real, const NV: usize, const NC: usize, const NU: usize> Motion<'_, T, N
     }
 
     /// Returns the linear system whose rows are the independent ones of the blocks.
-    fn assemble<const NX: usize, const NP: usize, const NS: usize>(
+    fn assemble_linearization<const NX: usize, const NP: usize, const NS: usize>(
         &self,
         blocks: &IndependentBlocks<T, NV, NP, NS>,
     ) -> Linearization<T, NX, NU, NP, NS> {

@@ -49,7 +49,7 @@ impl<T: Real, const NV: usize, const NC: usize> Elimination<T, NV, NC> {
     /// Returns the pivot of a constraint, and its value before elimination; zeros if the index is out of
     /// range.
     #[inline]
-    fn pivot_of_constraint(&self, k: usize) -> (T, T) {
+    fn pivot_and_initial_value(&self, k: usize) -> (T, T) {
         let entry_or_zero = |list: &[T; NC]| list.get(k).copied().unwrap_or(T::zero());
         (entry_or_zero(&self.pivots), entry_or_zero(&self.before))
     }
@@ -62,11 +62,11 @@ fn has_accurate_pivot<T: Real, const NV: usize, const NC: usize>(
     found: &Elimination<T, NV, NC>,
     k: usize,
 ) -> bool {
-    let (pivot, before) = found.pivot_of_constraint(k);
+    let (pivot, before) = found.pivot_and_initial_value(k);
     pivot > minimum_pivot_ratio::<T>() * before
         && pivot
             > minimum_pivot_ratio_in_group::<T>()
-                * sum_over_constraint_group(groups, k, |k| found.pivot_of_constraint(k).1)
+                * sum_over_constraint_group(groups, k, |k| found.pivot_and_initial_value(k).1)
 }
 
 /// Returns whether the pivot of a sliding contact is accurate enough: it must be positive and clearly above
@@ -77,12 +77,12 @@ pub(super) fn has_determined_pivot<T: Real, const NV: usize, const NC: usize>(
     found: &Elimination<T, NV, NC>,
     k: usize,
 ) -> bool {
-    let (pivot, before) = found.pivot_of_constraint(k);
+    let (pivot, before) = found.pivot_and_initial_value(k);
     let least = epsilon::<T>().sqrt();
     pivot > least * before
         && pivot
             > minimum_pivot_ratio_in_group::<T>()
-                * sum_over_constraint_group(groups, k, |k| found.pivot_of_constraint(k).1)
+                * sum_over_constraint_group(groups, k, |k| found.pivot_and_initial_value(k).1)
 }
 
 /// Splits the result of an elimination whose pivots are entries of the Jacobian in predetermined columns.
@@ -93,7 +93,7 @@ pub fn solution_with_predetermined_pivots<T: Real, const NV: usize, const NC: us
     found: &Elimination<T, NV, NC>,
 ) -> Option<Solution<T, NV, NC>> {
     let relative_pivot = |k: usize| {
-        let (pivot, before) = found.pivot_of_constraint(k);
+        let (pivot, before) = found.pivot_and_initial_value(k);
         constant::<T>(9.0) * pivot / before
     };
     // A ratio of NaN must not be skipped.

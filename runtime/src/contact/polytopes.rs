@@ -117,7 +117,7 @@ enum DeterminingFeatures<T> {
     Points(ClosestFeatures),
 }
 
-fn vector<T: Real>(v: [f64; 3]) -> Vector3<T> {
+fn vector_from_array<T: Real>(v: [f64; 3]) -> Vector3<T> {
     Vector3::from(v.map(constant))
 }
 
@@ -145,10 +145,10 @@ impl<'a, T: Real> Placed<'a, T> {
             directions: [zero; MAX_EDGES],
         };
         for (into, vertex) in placed.vertices.iter_mut().zip(shape.vertices) {
-            *into = rotation * vector::<T>(*vertex) + position;
+            *into = rotation * vector_from_array::<T>(*vertex) + position;
         }
         for ((normal, offset), face) in placed.normals.iter_mut().zip(&mut placed.offsets).zip(shape.faces) {
-            *normal = rotation * vector::<T>(face.normal);
+            *normal = rotation * vector_from_array::<T>(face.normal);
             *offset = constant::<T>(face.offset) + normal.dot(position);
         }
         for (direction, edge) in placed.directions.iter_mut().zip(shape.edges) {
@@ -203,7 +203,7 @@ impl<'a, T: Real> Placed<'a, T> {
     }
 
     /// Returns the position of a point relative to the axis of a cylinder, perpendicular to the axis.
-    fn arm(&self, place: &Vector3<T>) -> Vector3<T> {
+    fn offset_from_cylinder_axis(&self, place: &Vector3<T>) -> Vector3<T> {
         let (axis, from_end) = (self.direction(0), place - self.vertex(0));
         from_end - axis * axis.dot(&from_end)
     }
@@ -246,7 +246,7 @@ fn edge_as_centered_segment<T: Real>(
 }
 
 fn vertex_position_in_body<T: Real>(shape: &Polytope<'_>, index: u8) -> Vector3<T> {
-    shape.vertices.get(usize::from(index)).map_or_else(Vector3::zeros, |p| vector(*p))
+    shape.vertices.get(usize::from(index)).map_or_else(Vector3::zeros, |p| vector_from_array(*p))
 }
 
 /// Returns the features of all pairs, one after another: 22 values and 13 for each point of a face; for pairs
@@ -291,7 +291,7 @@ fn write_features<T: Real>(pair: &PolytopePair<'_>, pose: &[T], is_bounded: bool
         return;
     };
     let (own, other) = if face.is_second { (&second, &first) } else { (&first, &second) };
-    let mut points = [ClippedPoint::unused(); clip::MAX_POINTS];
+    let mut points = [ClippedPoint::placeholder_point(); clip::MAX_POINTS];
     let (count, opposite) = write_clipped_points(own, other, &face, tolerance, &mut points);
     let edge = best_edge_axis(&first, &second, face.distance, &bounds);
     let points = points.get(..count).unwrap_or(&[]);
@@ -361,7 +361,7 @@ fn write_face_and_edges<T: Real>(
         .shape
         .faces
         .get(face.face)
-        .map_or_else(|| (Vector3::zeros(), T::zero()), |f| (vector(f.normal), constant(f.offset)));
+        .map_or_else(|| (Vector3::zeros(), T::zero()), |f| (vector_from_array(f.normal), constant(f.offset)));
     let (zero, one) = (T::zero(), T::one());
     // Gaps of the points on a face are not below this value.
     let unbounded = -constant::<T>(1e6 * (first.shape.size + second.shape.size));
@@ -397,7 +397,8 @@ fn write_features_of_point<T: Real>(
     into: &mut [T],
 ) {
     let (zero, one) = (T::zero(), T::one());
-    let normal = own.faces.get(face.face).map_or_else(Vector3::zeros, |face| vector::<T>(face.normal));
+    let normal =
+        own.faces.get(face.face).map_or_else(Vector3::zeros, |face| vector_from_array::<T>(face.normal));
     let (is_cut, is_own, start, along, plane) = match point.origin {
         PointOrigin::Vertex(k) => {
             (zero, zero, vertex_position_in_body(other, k), Vector3::zeros(), (Vector3::zeros(), zero))
@@ -409,8 +410,10 @@ fn write_features_of_point<T: Real>(
             (one, zero, start, (end - start).normalize(), plane)
         }
         PointOrigin::BoxInCorner(k) => {
-            let plane =
-                opposite.map_or_else(|| (normal, zero), |face| (vector(face.normal), constant(face.offset)));
+            let plane = opposite.map_or_else(
+                || (normal, zero),
+                |face| (vector_from_array(face.normal), constant(face.offset)),
+            );
             (one, one, vertex_position_in_body(own, k), normal, plane)
         }
     };

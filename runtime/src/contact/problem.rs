@@ -26,7 +26,7 @@ mod trial;
 pub(super) use basis::{DelassusFactor, UsedColumns, dot};
 pub(super) use elimination::subtract_multiple;
 pub(super) use linear::ImpulseEquations;
-pub(super) use sensitivity::LinearisedImpulses;
+pub(super) use sensitivity::LinearisedImpulseEquations;
 use trial::ContactMode;
 
 /// List with an entry for each contact velocity.
@@ -184,7 +184,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     }
 
     /// Returns the row of the normal impulse that bounds friction, and the rows of friction.
-    fn rows_of_contact(&self, k: usize) -> (usize, Range<usize>) {
+    fn normal_and_friction_rows(&self, k: usize) -> (usize, Range<usize>) {
         let Rows { first, count } = self.rows[k];
         (self.rows[self.pressed_by[k]].first, first + usize::from(self.has_gap_function(k))..first + count)
     }
@@ -395,7 +395,8 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         // At the edge of the static cone surfaces stick until they move.
         let still = self.contact_velocity_rounding_error(impulses);
         let is_sticking = |k: usize| {
-            let square = self.rows_of_contact(k).1.fold(T::zero(), |sum, i| sum + rates[i] * rates[i]);
+            let square =
+                self.normal_and_friction_rows(k).1.fold(T::zero(), |sum, i| sum + rates[i] * rates[i]);
             self.friction[k] != self.kinetic[k] && square <= still * still
         };
         for k in 0..self.count {
@@ -453,7 +454,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     }
 
     /// Sets `B`, and `W` if `B` is not exact, to those of selected rows of another problem.
-    fn copy_selected_weights<const OK: usize, const OR: usize>(
+    fn copy_selected_delassus_rows<const OK: usize, const OR: usize>(
         &mut self,
         other: &ContactProblem<T, OK, OR>,
         rows: &[usize],
@@ -530,7 +531,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
             return None;
         }
         kept.size = kept.count;
-        kept.copy_selected_weights(self, normals.get(..kept.count).unwrap_or_default());
+        kept.copy_selected_delassus_rows(self, normals.get(..kept.count).unwrap_or_default());
         let spread_pushes_to_normal_rows = |pushes: &RowList<T, GR>| {
             let mut all = RowList::<T, NR>::repeat_entry(T::zero());
             normals.iter().zip(pushes.iter()).take(kept.count).for_each(|(n, push)| all[*n] = *push);

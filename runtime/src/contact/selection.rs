@@ -168,8 +168,12 @@ impl<const CK: usize, const CR: usize> ContactSelection<CK, CR> {
         let still = SVector::zeros();
         let velocity_change = |p: &_| mechanism.velocity_change_by_impulse(t, q, &still, T::zero(), p);
         let none = velocity_change(&still);
-        let solve = |row: [T; NV]| (velocity_change(&SVector::from(row)) - none).data.0[0];
-        *effects = ImpulseEffects::Matrix(self.compute_responses_and_weights(jacobian, solve, problem));
+        let velocity_change_of_row = |row: [T; NV]| (velocity_change(&SVector::from(row)) - none).data.0[0];
+        *effects = ImpulseEffects::Matrix(self.compute_responses_and_weights(
+            jacobian,
+            velocity_change_of_row,
+            problem,
+        ));
     }
 
     /// Returns the effects of impulses at the selected contacts from those at all contacts.
@@ -224,7 +228,7 @@ impl<const CK: usize, const CR: usize> ContactSelection<CK, CR> {
             }
         }
         let columns = UsedColumns::columns_for_used_entries(is_used);
-        if !basis.set_basis_columns(&columns) {
+        if !basis.restart_with_columns(&columns) {
             return false;
         }
         for k in 0..self.count {

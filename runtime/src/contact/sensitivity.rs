@@ -213,7 +213,10 @@ where
             let constraint = M::CONTACTS.get(index).copied().unwrap_or_default();
             ConstraintError::NoDerivatives { constraint }
         };
-        let regular = acted.problem.check_derivatives(&acted.impulses).map_err(underivable_contact_error);
+        let regular = acted
+            .problem
+            .check_impulses_are_differentiable(&acted.impulses)
+            .map_err(underivable_contact_error);
         self.found = Some(regular.map(|()| {
             let closed = ClosedContacts::new(self.contacts, self.at, acted, &responses);
             let after = closed.velocity_after_impulses();

@@ -160,16 +160,16 @@ impl<'a, M, T: Real, const NQ: usize, const NV: usize, const NR: usize>
         }
         let Some(jacobian) = self.contact_jacobian() else { return rates };
         let columns = self.mechanism.contact_columns();
-        let range = |k: usize| columns.get(selection.mechanism_index_of_contact(k)).copied();
+        let jacobian_column_range = |k: usize| columns.get(selection.mechanism_index_of_contact(k)).copied();
         let layout = selection.contact_layout();
         let mut k = 0;
         while k < selection.contact_count() {
-            let (reach, Rows { first, mut count }) = (range(k), layout.rows(k));
+            let (reach, Rows { first, mut count }) = (jacobian_column_range(k), layout.rows(k));
             let top = selection.mechanism_index_of_row(first);
             k += 1;
             // Contacts of the same bodies have adjacent rows, which are multiplied at once.
             while k < selection.contact_count()
-                && range(k) == reach
+                && jacobian_column_range(k) == reach
                 && selection.mechanism_index_of_row(first + count) == top + count
             {
                 count += layout.rows(k).count;

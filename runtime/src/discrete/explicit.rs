@@ -87,10 +87,10 @@ pub(super) fn runge_kutta_change<T: Real, V>(
     scaled: impl Fn(&V, T) -> V,
 ) -> (V, V) {
     let (two, sixth) = (constant::<T>(2.0), h / constant(6.0));
-    let change_by_rates = |a: &V, b: &V, c: &V, d: &V| {
+    let weighted_stage_sum = |a: &V, b: &V, c: &V, d: &V| {
         scaled(&plus_scaled(&plus_scaled(&plus_scaled(a, two, b), two, c), T::one(), d), sixth)
     };
-    (change_by_rates(&k1.0, &k2.0, &k3.0, &k4.0), change_by_rates(&k1.1, &k2.1, &k3.1, &k4.1))
+    (weighted_stage_sum(&k1.0, &k2.0, &k3.0, &k4.0), weighted_stage_sum(&k1.1, &k2.1, &k3.1, &k4.1))
 }
 
 /// Start of a step: mechanism, time, configuration and inputs.
@@ -291,7 +291,7 @@ impl<T: Real> DifferentiableStep<T> for SemiImplicitEuler<T> {
     where
         M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
     {
-        implicit::constrained_euler_step(self, mechanism, t, q, v, u)
+        implicit::constrained_semi_implicit_transition(self, mechanism, t, q, v, u)
     }
 }
 

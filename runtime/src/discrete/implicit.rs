@@ -400,7 +400,7 @@ impl<T: Real> ImplicitMidpoint<T> {
 
 /// Returns a constrained semi-implicit Euler step with its Jacobians. Forces are evaluated at the start of
 /// the step, inertial terms at the midpoint.
-pub(super) fn constrained_euler_step<
+pub(super) fn constrained_semi_implicit_transition<
     M,
     T,
     const NQ: usize,

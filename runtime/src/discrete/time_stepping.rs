@@ -191,7 +191,7 @@ impl<'a, M, const NV: usize> ConfigurationManifold<'a, M, NV> {
             return (*v, by_dv);
         }
         let value = self.mechanism.carry(t, q, &displaced.dv, v);
-        let rotation = self.rotation_matrix(t, q, &value);
+        let rotation = self.velocity_derivative_by_rotation(t, q, &value);
         add_product_of_some(&mut by_dv, self.ball_and_free_velocity_indices(), &rotation, &displaced.by_dv);
         (value, by_dv)
     }
@@ -216,7 +216,7 @@ impl<'a, M, const NV: usize> ConfigurationManifold<'a, M, NV> {
     }
 
     /// Returns the derivative of the components of a velocity with respect to rotations of the axes.
-    fn rotation_matrix<T: Real, const NQ: usize, const NU: usize>(
+    fn velocity_derivative_by_rotation<T: Real, const NQ: usize, const NU: usize>(
         &self,
         t: T,
         q: &SVector<T, NQ>,
@@ -283,7 +283,11 @@ impl<'a, M, const NV: usize> ConfigurationManifold<'a, M, NV> {
         let value = self.mechanism.carry(t, q, dv, &v.value);
         let mut carried = VectorWithDerivatives { value, ..*v };
         self.multiply_derivatives_from_left(&self.transport_matrix(t, q, dv), &mut carried);
-        self.add_rotational_block_product(&mut carried, &self.rotation_matrix(t, q, &value), end);
+        self.add_rotational_block_product(
+            &mut carried,
+            &self.velocity_derivative_by_rotation(t, q, &value),
+            end,
+        );
         carried
     }
 

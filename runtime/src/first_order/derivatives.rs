@@ -83,7 +83,7 @@ where
         q: &SVector<M::Scalar, NQ>,
         v: &SVector<M::Scalar, NE>,
     ) -> SMatrix<M::Scalar, NE, NE> {
-        let (m, v) = self.with_states(v);
+        let (m, v) = self.mechanism_and_velocities(v);
         with_diagonal::<_, NV, NX, NE>(&m.coriolis_matrix(t, q, &v), nalgebra::zero())
     }
 
@@ -94,7 +94,7 @@ where
         v: &SVector<M::Scalar, NE>,
         a: &SVector<M::Scalar, NE>,
     ) -> (SMatrix<M::Scalar, NE, NE>, SMatrix<M::Scalar, NE, NE>) {
-        let ((m, v), a) = (self.with_states(v), split::<_, NV, NX, NE>(a).0);
+        let ((m, v), a) = (self.mechanism_and_velocities(v), split::<_, NV, NX, NE>(a).0);
         let (by_q, by_v) = m.inverse_dynamics_derivatives(t, q, &v, &a);
         let rates = m.state_rate_derivatives(t, q, &v, &SVector::zeros());
         let by_x = m.inverse_dynamics_by_states(t, q, &v, &a);
@@ -112,7 +112,7 @@ where
         v: &SVector<M::Scalar, NE>,
         tau: &SVector<M::Scalar, NE>,
     ) -> ByMotion<M::Scalar, NE, NE> {
-        let ((m, v), tau) = (self.with_states(v), split::<_, NV, NX, NE>(tau).0);
+        let ((m, v), tau) = (self.mechanism_and_velocities(v), split::<_, NV, NX, NE>(tau).0);
         let (by_q, by_v, by_force) = m.forward_dynamics_derivatives(t, q, &v, &tau);
         let rates = m.state_rate_derivatives(t, q, &v, &SVector::zeros());
         let by_x = m.forward_dynamics_by_states(t, q, &v, &tau);
@@ -145,7 +145,7 @@ where
         v: &SVector<M::Scalar, NE>,
         u: &SVector<M::Scalar, NU>,
     ) -> ByMotion<M::Scalar, NE, NU> {
-        let (m, v) = self.with_states(v);
+        let (m, v) = self.mechanism_and_velocities(v);
         let (by_q, by_v, by_u) = m.generalized_forces_derivatives(t, q, &v, u);
         let rates = m.state_rate_derivatives(t, q, &v, u);
         let alone = m.state_rate_derivatives(t, q, &v, &SVector::zeros());

@@ -73,7 +73,7 @@ impl<'m, M, const NV: usize, const NX: usize, const NE: usize> Extended<'m, M, N
 
     /// Returns the mechanism with the first-order states contained in the extended velocity `all`, and the
     /// velocities contained in it.
-    pub(super) fn with_states<T: Real, const NQ: usize, const NU: usize>(
+    pub(super) fn mechanism_and_velocities<T: Real, const NQ: usize, const NU: usize>(
         &self,
         all: &SVector<T, NE>,
     ) -> (M, SVector<T, NV>)
@@ -146,7 +146,7 @@ where
         q: &SVector<M::Scalar, NQ>,
         v: &SVector<M::Scalar, NE>,
     ) -> SVector<M::Scalar, NE> {
-        let (m, v) = self.with_states(v);
+        let (m, v) = self.mechanism_and_velocities(v);
         join(&m.bias_forces(t, q, &v), &-m.state_rates(t, q, &v, &SVector::zeros()))
     }
 
@@ -157,7 +157,7 @@ where
         v: &SVector<M::Scalar, NE>,
         a: &SVector<M::Scalar, NE>,
     ) -> SVector<M::Scalar, NE> {
-        let ((m, v), (a, rates)) = (self.with_states(v), split::<_, NV, NX, NE>(a));
+        let ((m, v), (a, rates)) = (self.mechanism_and_velocities(v), split::<_, NV, NX, NE>(a));
         let own = rates - m.state_rates(t, q, &v, &SVector::zeros());
         join(&m.inverse_dynamics(t, q, &v, &a), &own)
     }
@@ -169,7 +169,7 @@ where
         v: &SVector<M::Scalar, NE>,
         tau: &SVector<M::Scalar, NE>,
     ) -> SVector<M::Scalar, NE> {
-        let ((m, v), (tau, given)) = (self.with_states(v), split::<_, NV, NX, NE>(tau));
+        let ((m, v), (tau, given)) = (self.mechanism_and_velocities(v), split::<_, NV, NX, NE>(tau));
         let rates = given + m.state_rates(t, q, &v, &SVector::zeros());
         join(&m.forward_dynamics(t, q, &v, &tau), &rates)
     }
@@ -181,7 +181,7 @@ where
         v: &SVector<M::Scalar, NE>,
         tau: &SVector<M::Scalar, NE>,
     ) -> Result<SVector<M::Scalar, NE>, ConstraintError> {
-        let ((m, v), (tau, given)) = (self.with_states(v), split::<_, NV, NX, NE>(tau));
+        let ((m, v), (tau, given)) = (self.mechanism_and_velocities(v), split::<_, NV, NX, NE>(tau));
         let rates = given + m.state_rates(t, q, &v, &SVector::zeros());
         Ok(join(&m.try_forward_dynamics(t, q, &v, &tau)?, &rates))
     }
@@ -193,7 +193,7 @@ where
         v: &SVector<M::Scalar, NE>,
         u: &SVector<M::Scalar, NU>,
     ) -> SVector<M::Scalar, NE> {
-        let (m, v) = self.with_states(v);
+        let (m, v) = self.mechanism_and_velocities(v);
         let by_inputs = m.state_rates(t, q, &v, u) - m.state_rates(t, q, &v, &SVector::zeros());
         join(&m.generalized_forces(t, q, &v, u), &by_inputs)
     }
@@ -204,7 +204,7 @@ where
         q: &SVector<M::Scalar, NQ>,
         v: &SVector<M::Scalar, NE>,
     ) -> M::Scalar {
-        let (m, v) = self.with_states(v);
+        let (m, v) = self.mechanism_and_velocities(v);
         m.kinetic_energy(t, q, &v)
     }
 
@@ -221,7 +221,7 @@ where
         v: &SVector<M::Scalar, NE>,
     ) -> SVector<M::Scalar, NE> {
         let x = split::<_, NV, NX, NE>(v).1;
-        let (m, v) = self.with_states(v);
+        let (m, v) = self.mechanism_and_velocities(v);
         join(&m.generalized_momentum(t, q, &v), &x)
     }
 
@@ -231,7 +231,7 @@ where
         q: &SVector<M::Scalar, NQ>,
         v: &SVector<M::Scalar, NE>,
     ) -> SVector<M::Scalar, NE> {
-        let (m, v) = self.with_states(v);
+        let (m, v) = self.mechanism_and_velocities(v);
         join(&m.momentum_rate(t, q, &v), &m.state_rates(t, q, &v, &SVector::zeros()))
     }
 }
@@ -264,7 +264,7 @@ where
         v: &SVector<M::Scalar, NE>,
     ) -> Result<Projected<M::Scalar, NQ, NE>, ConstraintError> {
         let x = split::<_, NV, NX, NE>(v).1;
-        let (m, v) = self.with_states(v);
+        let (m, v) = self.mechanism_and_velocities(v);
         let (q, v) = m.project(t, q, &v)?;
         Ok((q, join(&v, &x)))
     }
@@ -277,7 +277,7 @@ where
         h: M::Scalar,
         p: &SVector<M::Scalar, NE>,
     ) -> SVector<M::Scalar, NE> {
-        let ((m, v), (p, given)) = (self.with_states(v), split::<_, NV, NX, NE>(p));
+        let ((m, v), (p, given)) = (self.mechanism_and_velocities(v), split::<_, NV, NX, NE>(p));
         join(&m.velocity_change_by_impulse(t, q, &v, h, &p), &given)
     }
 
@@ -343,7 +343,7 @@ where
         (given, impulses): Assumed<'_, M::Scalar, NE>,
         h: M::Scalar,
     ) -> Result<Touched<M::Scalar, NQ, NE>, ConstraintError> {
-        let ((m, v), (free, x)) = (self.with_states(v), split::<_, NV, NX, NE>(free));
+        let ((m, v), (free, x)) = (self.mechanism_and_velocities(v), split::<_, NV, NX, NE>(free));
         let (given, added) = split::<_, NV, NX, NE>(given);
         let impulses = impulses.map(|list| split::<_, NV, NX, NE>(list).0);
         let touched = m.contact_step(t, (q, &v), (end, &free), (&given, &impulses), h)?;

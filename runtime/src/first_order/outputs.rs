@@ -54,7 +54,7 @@ where
         a: &SVector<T, NE>,
         u: &SVector<T, NU>,
     ) -> SVector<T, NY> {
-        let ((m, v), a) = (self.with_states(v), split::<_, NV, NX, NE>(a).0);
+        let ((m, v), a) = (self.mechanism_and_velocities(v), split::<_, NV, NX, NE>(a).0);
         m.outputs(t, q, &v, &a, u)
     }
 }
@@ -81,7 +81,7 @@ where
         a: &SVector<T, NE>,
         u: &SVector<T, NU>,
     ) -> OutputJacobians<T, NY, NE, NU> {
-        let ((m, v), a) = (self.with_states(v), split::<_, NV, NX, NE>(a).0);
+        let ((m, v), a) = (self.mechanism_and_velocities(v), split::<_, NV, NX, NE>(a).0);
         let own = m.output_derivatives(t, q, &v, &a, u);
         let (by_x, none) = (m.outputs_by_states(t, q, &v, &a, u), SMatrix::<T, NY, NX>::zeros());
         OutputJacobians {

@@ -77,13 +77,15 @@ pub(super) fn trial_step<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const
     if dense && error <= T::one() {
         evaluate_stages(&mut k, END + 1..16);
         let [a, b, c, d] = TERMS.map(|weights| weighted_sum_over_stage_indices(h, weights, &k));
-        let path_coefficients = |before: &SVector<T, NV>, change: &SVector<T, NV>, after: &SVector<T, NV>| {
-            (before * h - change, change * constant::<T>(2.0) - (before + after) * h)
-        };
-        let (square, cube) = path_coefficients(&start.v, &displacement, &after.displacement);
+        let quadratic_and_cubic_path_terms =
+            |before: &SVector<T, NV>, change: &SVector<T, NV>, after: &SVector<T, NV>| {
+                (before * h - change, change * constant::<T>(2.0) - (before + after) * h)
+            };
+        let (square, cube) = quadratic_and_cubic_path_terms(&start.v, &displacement, &after.displacement);
         let terms = [square, cube, a.displacement, b.displacement, c.displacement, d.displacement];
         step.displacement = step.displacement.with_coefficients_from_third(terms);
-        let (square, cube) = path_coefficients(acceleration, &(end.v - start.v), &after.velocity);
+        let (square, cube) =
+            quadratic_and_cubic_path_terms(acceleration, &(end.v - start.v), &after.velocity);
         step.velocity = step
             .velocity
             .with_coefficients_from_third([square, cube, a.velocity, b.velocity, c.velocity, d.velocity]);

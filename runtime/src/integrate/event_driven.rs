@@ -398,7 +398,7 @@ where
         I: Inputs<T, NQ, NV, NU>,
     {
         let Self { phased, origin, begin, .. } = *self;
-        let end = step.end.check_finite().map_err(|_| Error::NotFinite { t: to_f64(begin.t) })?;
+        let end = step.end.finite_or_error().map_err(|_| Error::NotFinite { t: to_f64(begin.t) })?;
         let (q, v) = kept(phased, origin + end.t, &end.q, &end.v);
         let inputs = &mut *self.inputs;
         let mut system = System::new(phased, ContinuousInputs(|t, q: &_, v: &_| inputs.evaluate(t, q, v)));

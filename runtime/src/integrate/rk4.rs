@@ -57,7 +57,7 @@ pub(super) fn rk4_change<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const
     added: Option<&SVector<T, NV>>,
 ) -> (StageRates<T, NV>, Option<SVector<T, NV>>) {
     let half = h * constant(0.5);
-    let transported_acceleration = |system: &D, displacement: &SVector<T, NV>| {
+    let transported_added_acceleration = |system: &D, displacement: &SVector<T, NV>| {
         added.map(|added| system.carry(start.t, &start.q, displacement, added))
     };
     let add_acceleration_to_rates = |(displacement, acceleration): StageRates<T, NV>,
@@ -67,13 +67,13 @@ pub(super) fn rk4_change<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const
     let k1 = add_acceleration_to_rates((start.v, before), &added.copied());
     let k2 = add_acceleration_to_rates(
         rates_at_advanced_state(system, start, half, &k1),
-        &transported_acceleration(system, &(k1.0 * half)),
+        &transported_added_acceleration(system, &(k1.0 * half)),
     );
     let k3 = add_acceleration_to_rates(
         rates_at_advanced_state(system, start, half, &k2),
-        &transported_acceleration(system, &(k2.0 * half)),
+        &transported_added_acceleration(system, &(k2.0 * half)),
     );
-    let at_end = transported_acceleration(system, &(k3.0 * h));
+    let at_end = transported_added_acceleration(system, &(k3.0 * h));
     let k4 = add_acceleration_to_rates(rates_at_advanced_state(system, start, h, &k3), &at_end);
     let (two, sixth) = (constant::<T>(2.0), h / constant(6.0));
     let mean = ((k1.0 + k4.0 + (k2.0 + k3.0) * two) * sixth, (k1.1 + k4.1 + (k2.1 + k3.1) * two) * sixth);

@@ -59,7 +59,8 @@ fn bracket_curvature<T: Real, const N: usize>(
     factors: [FactorDerivatives<T>; 2],
 ) -> SquareBlock<T, N> {
     let two = constant::<T>(2.0);
-    let product_with_lambda = |x: &[T; N]| lambda.iter().zip(x).fold(T::zero(), |sum, (l, x)| sum + *l * *x);
+    let inner_product_with_lambda =
+        |x: &[T; N]| lambda.iter().zip(x).fold(T::zero(), |sum, (l, x)| sum + *l * *x);
     let unit_vector = |j: usize| core::array::from_fn(|i| if i == j { T::one() } else { T::zero() });
     let sum_of_vectors = |a: [T; N], b: [T; N]| core::array::from_fn(|k| a[k] + b[k]);
     // adᵏ v, and its derivatives along each direction.
@@ -89,12 +90,12 @@ fn bracket_curvature<T: Real, const N: usize>(
             let [value, slope, curvature] = factors[k / 2 - 1];
             let bent = if i == j && i + 3 >= N { two * slope } else { T::zero() };
             total = total
-                + value * product_with_lambda(&second)
+                + value * inner_product_with_lambda(&second)
                 + slope
-                    * (squared_angle_derivative(i) * product_with_lambda(&changes[k][j])
-                        + squared_angle_derivative(j) * product_with_lambda(&changes[k][i]))
+                    * (squared_angle_derivative(i) * inner_product_with_lambda(&changes[k][j])
+                        + squared_angle_derivative(j) * inner_product_with_lambda(&changes[k][i]))
                 + (curvature * squared_angle_derivative(i) * squared_angle_derivative(j) + bent)
-                    * product_with_lambda(&powers[k]);
+                    * inner_product_with_lambda(&powers[k]);
         }
         total
     };
@@ -171,15 +172,15 @@ mod tests {
     ) -> SquareBlock<f64, N> {
         let h = 1e-3;
         core::array::from_fn(|j| {
-            let columns_times_lambda = |x: f64| {
+            let contracted_columns_at_displacement = |x: f64| {
                 f(core::array::from_fn(|i| if i == j { x } else { 0.0 }))
                     .map(|column| column.iter().zip(&lambda).map(|(x, l)| x * l).sum::<f64>())
             };
             let (a, b, c, d) = (
-                columns_times_lambda(-2.0 * h),
-                columns_times_lambda(-h),
-                columns_times_lambda(h),
-                columns_times_lambda(2.0 * h),
+                contracted_columns_at_displacement(-2.0 * h),
+                contracted_columns_at_displacement(-h),
+                contracted_columns_at_displacement(h),
+                contracted_columns_at_displacement(2.0 * h),
             );
             core::array::from_fn(|i| (a[i] - d[i] + 8.0 * (c[i] - b[i])) / (12.0 * h))
         })

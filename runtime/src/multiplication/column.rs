@@ -99,8 +99,8 @@ impl<A: Arithmetic, T: Real, const E: usize, const F: usize> Column<A, T, E, F> 
     /// Adds a multiple of another column to this one, or subtracts it.
     #[inline(always)]
     pub fn add_multiple<const MINUS: bool>(&mut self, factor: T, other: &Self) {
-        add_multiples::<A, T, 8, MINUS>(&mut self.eights, factor, &other.eights);
-        add_multiples::<A, T, 4, MINUS>(&mut self.fours, factor, &other.fours);
+        add_multiple_of_registers::<A, T, 8, MINUS>(&mut self.eights, factor, &other.eights);
+        add_multiple_of_registers::<A, T, 4, MINUS>(&mut self.fours, factor, &other.fours);
     }
 
     /// Reads a column of at most as many rows as the registers hold.
@@ -125,7 +125,7 @@ impl<A: Arithmetic, T: Real, const E: usize, const F: usize> Column<A, T, E, F> 
 
 /// Adds multiples of other columns to columns, or subtracts them.
 #[inline(always)]
-fn add_multiples<A: Arithmetic, T: Real, const W: usize, const MINUS: bool>(
+fn add_multiple_of_registers<A: Arithmetic, T: Real, const W: usize, const MINUS: bool>(
     sums: &mut [Vector<A, T, W>],
     factor: T,
     others: &[Vector<A, T, W>],

@@ -51,11 +51,11 @@ impl EulerSequence {
         let ((sb, cb), (sc, cc)) = (b.sin_cos(), c.sin_cos());
         let (o, i) = (T::zero(), T::one());
         let rows = if standard.symmetric {
-            let sine = check_sine(sb, b)?;
+            let sine = nonzero_sine(sb, b)?;
             let first = RowVector3::new(o, sc, cc) / sine;
             [first, RowVector3::new(o, cc, -sc), RowVector3::new(i, o, o) - first * cb]
         } else {
-            let sine = check_sine(cb, b)?;
+            let sine = nonzero_sine(cb, b)?;
             let first = RowVector3::new(cc, -sc, o) / sine;
             [first, RowVector3::new(sc, cc, o), RowVector3::new(o, o, i) - first * sb]
         };
@@ -74,9 +74,9 @@ impl EulerSequence {
         let ((sa, ca), (sb, cb)) = (a.sin_cos(), b.sin_cos());
         let (o, i) = (T::zero(), T::one());
         let (third, along) = if standard.symmetric {
-            (RowVector3::new(o, sa, -ca) / check_sine(sb, b)?, cb)
+            (RowVector3::new(o, sa, -ca) / nonzero_sine(sb, b)?, cb)
         } else {
-            (RowVector3::new(o, -sa, ca) / check_sine(cb, b)?, sb)
+            (RowVector3::new(o, -sa, ca) / nonzero_sine(cb, b)?, sb)
         };
         let rows = [RowVector3::new(i, o, o) - third * along, RowVector3::new(o, ca, sa), third];
         Ok(Matrix3::from_rows(&standard.reorder_from_standard(rows))
@@ -116,7 +116,7 @@ impl EulerSequence {
 
 /// Returns `sine`, the sine of the angle between the first and the third axis of Euler angles, or an error if
 /// it is zero to the rounding of the middle angle.
-fn check_sine<T: Real>(sine: T, middle: T) -> Result<T, Singular> {
+fn nonzero_sine<T: Real>(sine: T, middle: T) -> Result<T, Singular> {
     // NaN passes this test: it comes from the caller and is not a singularity.
     if sine.abs() <= parallel_axes_threshold::<T>() * middle.abs().max(T::one()) {
         Err(Singular::ParallelAxes)

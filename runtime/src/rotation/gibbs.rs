@@ -43,7 +43,7 @@ impl<T: Real> Gibbs<T> {
     /// [`Singular::HalfTurn`] if it is not finite. Close to that, its magnitude is of order 1/ε, and it still
     /// reproduces the rotation to rounding.
     pub fn from_quaternion(q: &UnitQuaternion<T>) -> Result<Self, Singular> {
-        check_finite(q.imag() / q.w)
+        finite_gibbs_vector(q.imag() / q.w)
     }
 
     /// Returns the Gibbs vector of the product `R R'` of the rotation of `self` and that of `other`:
@@ -54,7 +54,7 @@ impl<T: Real> Gibbs<T> {
     /// [`Singular::HalfTurn`] if the product is a rotation by π, whose Gibbs vector is not finite.
     pub fn compose(&self, other: &Self) -> Result<Self, Singular> {
         let (g, h) = (self.0, other.0);
-        check_finite((g + h + g.cross(&h)) / (T::one() - g.dot(&h)))
+        finite_gibbs_vector((g + h + g.cross(&h)) / (T::one() - g.dot(&h)))
     }
 
     /// Returns the vector `−g` of the inverse rotation.
@@ -87,7 +87,7 @@ impl<T: Real> Gibbs<T> {
     }
 }
 
-fn check_finite<T: Real>(g: Vector3<T>) -> Result<Gibbs<T>, Singular> {
+fn finite_gibbs_vector<T: Real>(g: Vector3<T>) -> Result<Gibbs<T>, Singular> {
     if g.iter().all(|x| x.is_finite()) { Ok(Gibbs(g)) } else { Err(Singular::HalfTurn) }
 }
 

@@ -49,11 +49,11 @@ impl RunTimes {
     pub(super) fn new<T: Real>(duration: Option<T>, every: Option<T>, period: Option<T>) -> Self {
         let rounding = 8.0 * to_f64(epsilon::<T>());
         let [end, every, period] = [duration, every, period].map(|time| time.map(to_f64));
-        let whole_step_count = |interval: Option<f64>| {
+        let whole_interval_count = |interval: Option<f64>| {
             let [count, parts] = ratio_of_small_integers(end?, interval?, rounding)?;
             (parts == 1).then_some(count)
         };
-        let last = [whole_step_count(every), whole_step_count(period)];
+        let last = [whole_interval_count(every), whole_interval_count(period)];
         let ratio =
             every.zip(period).and_then(|(every, period)| ratio_of_small_integers(period, every, rounding));
         Self { end, every, period, last, ratio }

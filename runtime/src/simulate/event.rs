@@ -292,8 +292,11 @@ where
             return Ok(earlier);
         }
         let sign = if event.side == Ordering::Less { T::one() } else { -T::one() };
-        let theta =
-            first_sign_change(|theta| event.value_of_function(&path(theta)) * sign, [from, to], end * sign);
+        let theta = sign_change_position(
+            |theta| event.value_of_function(&path(theta)) * sign,
+            [from, to],
+            end * sign,
+        );
         event.found = Some(theta);
         if earlier.is_some_and(|hit| hit.theta <= theta) {
             return Ok(earlier);
@@ -364,7 +367,7 @@ fn position_and_sign_after_zero<T: Real>(f: &mut impl FnMut(T) -> T, [a, b]: [T;
 /// at `b`. The position is bracketed to rounding error, and the result is the non-negative end of the
 /// bracket. The ITP method takes at most one evaluation more than bisection, and much fewer for smooth
 /// functions (Oliveira and Takahashi, ACM Trans. Math. Softw. 47, 2020).
-fn first_sign_change<T: Real>(mut f: impl FnMut(T) -> T, [mut a, mut b]: [T; 2], end: T) -> T {
+fn sign_change_position<T: Real>(mut f: impl FnMut(T) -> T, [mut a, mut b]: [T; 2], end: T) -> T {
     let zero = T::zero();
     let (half, two) = (constant::<T>(0.5), constant::<T>(2.0));
     let (mut below, mut above) = (f(a), end);
@@ -402,25 +405,25 @@ mod tests {
     use super::*;
 
     /// Returns the position of the sign change of `f` between 0 and 1, and the number of evaluations of `f`.
-    fn find_sign_change(f: impl Fn(f64) -> f64) -> (f64, usize) {
+    fn sign_change_with_evaluation_count(f: impl Fn(f64) -> f64) -> (f64, usize) {
         let mut count = 0;
         let evaluate_and_count = |x| {
             count += 1;
             f(x)
         };
-        let x = first_sign_change(evaluate_and_count, [0.0, 1.0], f(1.0));
+        let x = sign_change_position(evaluate_and_count, [0.0, 1.0], f(1.0));
         (x, count)
     }
 
     #[test]
     fn sign_changes_are_found_to_rounding() {
-        let (x, count) = find_sign_change(|x| x * x - 0.5);
+        let (x, count) = sign_change_with_evaluation_count(|x| x * x - 0.5);
         assert!((x - core::f64::consts::FRAC_1_SQRT_2).abs() < 5e-16 && count < 16, "{count}");
-        let (x, count) = find_sign_change(|x| if x < 0.3 { -1e-3 } else { 1e3 });
+        let (x, count) = sign_change_with_evaluation_count(|x| if x < 0.3 { -1e-3 } else { 1e3 });
         assert!((x - 0.3).abs() < 5e-16 && count < 60, "{count}");
-        let (x, count) = find_sign_change(|x| (x - 0.7).powi(9));
+        let (x, count) = sign_change_with_evaluation_count(|x| (x - 0.7).powi(9));
         assert!((x - 0.7).abs() < 5e-16 && count < 60, "{count}");
-        assert_eq!(find_sign_change(|x| x).0, 0.0);
+        assert_eq!(sign_change_with_evaluation_count(|x| x).0, 0.0);
     }
 
     #[test]

@@ -143,7 +143,7 @@ where
         self.duration.map_or(Ok(()), |duration| check_not_negative("the duration", duration))?;
         self.check_sample_times()?;
         self.system.inputs.period().map_or(Ok(()), |period| check_positive("the control period", period))?;
-        let start = self.start.check_finite()?;
+        let start = self.start.finite_or_error()?;
         // A zero displacement normalises quaternions.
         let unit = self.system.mechanism.integrate(&start.q, &SVector::zeros());
         // If declared generalized speeds determine no rates, the displacement is not finite.

@@ -34,7 +34,7 @@ pub struct AxisPosition<T> {
 }
 
 /// Returns the unit step of each lane: one for a nonnegative number and zero for a negative one.
-fn step<T: Real>(x: T) -> T {
+fn unit_step<T: Real>(x: T) -> T {
     (T::one() + x.signum()) * constant(0.5)
 }
 
@@ -45,7 +45,11 @@ impl<T: Real> AxisPosition<T> {
         let inner = x.max(low).min(high);
         // `max` and `min` of NaN and a number are the number: adding `x · 0` restores the NaN.
         let nothing = x * T::zero();
-        AxisPosition { x: inner + nothing, beyond: x - inner, within: step(x - low) * step(high - x) }
+        AxisPosition {
+            x: inner + nothing,
+            beyond: x - inner,
+            within: unit_step(x - low) * unit_step(high - x),
+        }
     }
 
     /// Returns the half-open range of grid cells that can contain the argument: a single cell, or all cells
@@ -70,10 +74,11 @@ impl<T: Real> AxisPosition<T> {
 
     /// Returns one in each lane in which the grid cell contains the argument, and zero in others.
     pub fn cell_indicator(&self, points: &[f64], cell: usize) -> T {
-        let step_at_point = |k: usize| points.get(k).map_or(T::zero(), |p| step(self.x - constant(*p)));
+        let unit_step_at_point =
+            |k: usize| points.get(k).map_or(T::zero(), |p| unit_step(self.x - constant(*p)));
         let last = cell + 2 >= points.len();
-        let low = if cell == 0 { T::one() } else { step_at_point(cell) };
-        low - if last { T::zero() } else { step_at_point(cell + 1) }
+        let low = if cell == 0 { T::one() } else { unit_step_at_point(cell) };
+        low - if last { T::zero() } else { unit_step_at_point(cell + 1) }
     }
 
     /// Returns the weights of the four points around a cell, for a derivative of the given order.

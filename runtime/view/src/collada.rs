@@ -164,7 +164,7 @@ fn corners_of_faces(mesh: Node<'_, '_>, list: Node<'_, '_>) -> Result<Vec<Vec<Po
     }
     let (offset, input) = vertices.ok_or_else(|| format!("a `{kind}` has no input for its vertices"))?;
     let points = vertex_positions(mesh, input)?;
-    let corner_of_face = |index: &[usize]| {
+    let corner_position_at_indices = |index: &[usize]| {
         let found = index.get(offset).and_then(|k| points.get(*k)).copied();
         found.ok_or_else(|| format!("a `{kind}` refers to a vertex that does not exist"))
     };
@@ -177,7 +177,7 @@ fn corners_of_faces(mesh: Node<'_, '_>, list: Node<'_, '_>) -> Result<Vec<Vec<Po
     for indices in child_elements(list, "p") {
         let indices: Vec<usize> = parse_number_list(indices)?;
         let corners: Vec<Point3<f64>> =
-            indices.chunks(stride).map(corner_of_face).collect::<Result<_, _>>()?;
+            indices.chunks(stride).map(corner_position_at_indices).collect::<Result<_, _>>()?;
         let mut rest = &corners[..];
         while !rest.is_empty() {
             let count = match kind {

@@ -145,7 +145,7 @@ pub fn mcap_of(names: &Names<'_>, samples: impl IntoIterator<Item = Instant>) ->
         let nanoseconds = (sample.t * 1e9).round() as u64;
         let stamp =
             format!("{{\"sec\":{},\"nsec\":{}}}", nanoseconds / 1_000_000_000, nanoseconds % 1_000_000_000);
-        let transform_message = |(name, placement): (&&str, &IsometryMatrix3<f64>)| {
+        let frame_transform_json = |(name, placement): (&&str, &IsometryMatrix3<f64>)| {
             let at = placement.translation.vector;
             let q = UnitQuaternion::from_rotation_matrix(&placement.rotation);
             format!(
@@ -160,7 +160,7 @@ pub fn mcap_of(names: &Names<'_>, samples: impl IntoIterator<Item = Instant>) ->
                 q.w
             )
         };
-        let transforms = names.frames.iter().zip(&sample.placements).map(transform_message);
+        let transforms = names.frames.iter().zip(&sample.placements).map(frame_transform_json);
         let joint_state_json = |(name, x): (&&str, &f64)| {
             let rate = names.velocities.iter().position(|rate| rate == name)?;
             Some(format!(

@@ -494,11 +494,9 @@ fn append_curve_and_describe_as_json(
     values: impl Iterator<Item = f64> + Clone,
     stream: &mut Stream,
 ) -> String {
-    let only_finite_values = || values.clone().filter(|x| x.is_finite());
-    let (low, high) = (
-        only_finite_values().fold(f64::INFINITY, f64::min),
-        only_finite_values().fold(f64::NEG_INFINITY, f64::max),
-    );
+    let finite_values = || values.clone().filter(|x| x.is_finite());
+    let (low, high) =
+        (finite_values().fold(f64::INFINITY, f64::min), finite_values().fold(f64::NEG_INFINITY, f64::max));
     let low = if low.is_finite() { low } else { 0.0 };
     let step = ((high - low) / LEVELS).max(f64::MIN_POSITIVE);
     let step = if high > low && step.is_finite() { step } else { 1.0 };

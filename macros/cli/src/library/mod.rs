@@ -10,7 +10,7 @@ mod write;
 use crate::Stop;
 use crate::commands::text_option_value;
 use crate::grid::{self, TableGrid};
-use crate::input::{CompiledMechanism, MechanismInput};
+use crate::input::{DerivedMechanism, MechanismInput};
 use crate::sources::{self, manifest_dependency};
 use clap::ArgMatches;
 pub use functions::doc_paragraphs;
@@ -80,7 +80,7 @@ pub fn generate_crate(
     matches: &ArgMatches,
 ) -> Result<LibraryCrate, Stop> {
     let graph = Graph::new();
-    let CompiledMechanism { source, model, output } = input.compile_mechanism(&graph)?;
+    let DerivedMechanism { source, model, output } = input.derive_mechanism(&graph)?;
     let shell = &source.mechanism.shell;
     if shell.generics.type_params().count() > 1 || shell.generics.const_params().next().is_some() {
         return Err(Stop::Failure(format!(

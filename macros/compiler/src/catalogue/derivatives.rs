@@ -232,7 +232,7 @@ pub const SECOND_ROWS: &[Row] = &[
         SECOND,
         |f| Declaration {
             arguments: vec![Q, V, U, Argument::Factors(f.nv)],
-            shape: Shape::InputHessian(f.nv, f.nu),
+            shape: Shape::InputPowerHessian(f.nv, f.nu),
             docs: vec![
                 "`(∂²/∂q∂q, ∂²/∂q∂v, ∂²/∂v∂v, ∂²/∂q∂u, ∂²/∂v∂u, ∂²/∂u∂u)` of `λᵀ τ`, with `τ` the \
                  [`generalized_forces`](Self::generalized_forces) of the inputs: the Hessians of its \
@@ -276,5 +276,5 @@ fn constraint_row_count(f: &Facts) -> usize {
 }
 
 fn forward_dynamics_derivatives_shape(f: &Facts) -> Shape {
-    if f.calls { Shape::CalledForward(f.nv) } else { Shape::Forward(f.nv) }
+    if f.calls { Shape::ForwardDerivativesByCalls(f.nv) } else { Shape::Forward(f.nv) }
 }

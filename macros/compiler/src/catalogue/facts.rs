@@ -202,7 +202,7 @@ impl Facts {
             all: model.constraints.len(),
             holonomic: model.holonomic_count(),
             slipping: model.constraints.iter().filter(|c| !c.friction.is_empty()).count(),
-            overdetermined: model.is_overconstrained(),
+            overdetermined: model.has_unpruned_redundancy(),
             determining: model.constraints.iter().any(|c| c.determines),
         });
         Facts {

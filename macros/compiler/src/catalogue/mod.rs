@@ -20,8 +20,8 @@ mod written;
 pub use constants::{absent_constants, is_known_constant_name};
 pub use facts::{ConstraintFacts, ContactCounts, Facts, FunctionNeed};
 pub use outputs::{
-    BY_PARAMETERS, DERIVATIVES, JACOBIAN, REACTION, TOUCHED, contact_force_function, output_functions,
-    reaction_function,
+    BY_PARAMETERS, DERIVATIVES, JACOBIAN, REACTION, TOUCHED, contact_force_output_function, output_functions,
+    reaction_output_function,
 };
 pub use row::{Declaration, DeclaredFunction, FunctionBodyOrigin, GeneratedId, Row};
 pub use shape::{Argument, CalledFunction, InverseForm, MatrixStructure, Record, RecordField, Shape};

@@ -128,7 +128,7 @@ pub fn output_functions(name: &str, size: usize, uses: UsedQuantities, f: &Facts
 
 /// Returns the hidden function of an output that contains reactions. It takes the state, accelerations and
 /// multipliers of the motion, and for a free-body diagram also the contact forces.
-pub fn reaction_function(name: &str, size: usize, is_diagram: bool, f: &Facts) -> DeclaredFunction {
+pub fn reaction_output_function(name: &str, size: usize, is_diagram: bool, f: &Facts) -> DeclaredFunction {
     let mut arguments = vec![Q, V, A];
     arguments.extend((f.nu > 0).then_some(U));
     arguments.extend(f.constraints.map(|c| Argument::Given("lambda", SuppliedQuantity::Multiplier, c.all)));
@@ -146,7 +146,7 @@ pub fn reaction_function(name: &str, size: usize, is_diagram: bool, f: &Facts) -
 
 /// Returns the hidden function of an output that contains contact forces. It takes the state, the inputs and
 /// the forces of all contacts.
-pub fn contact_force_function(name: &str, size: usize, f: &Facts) -> DeclaredFunction {
+pub fn contact_force_output_function(name: &str, size: usize, f: &Facts) -> DeclaredFunction {
     let mut arguments = vec![Q, V];
     arguments.extend((f.nu > 0).then_some(U));
     arguments.push(contact_force_argument(f));

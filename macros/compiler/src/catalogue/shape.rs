@@ -142,7 +142,7 @@ pub enum Shape {
     Hessian(usize),
     /// Second derivatives of the forces of inputs: by configuration twice, by configuration and velocity, by
     /// velocity twice, by configuration and input, by velocity and input, and by input twice.
-    InputHessian(usize, usize),
+    InputPowerHessian(usize, usize),
     /// Derivatives of an output by configuration, velocity, acceleration and input. The sizes are the numbers
     /// of output rows, velocities and inputs.
     Jacobians(usize, usize, usize),
@@ -161,7 +161,7 @@ pub enum Shape {
     Accelerated(usize),
     /// Derivatives of forward dynamics that call other functions. The outputs are the columns that are
     /// already computed.
-    CalledForward(usize),
+    ForwardDerivativesByCalls(usize),
     /// A linear system assembled from the derivatives of forward dynamics. The outputs are the forces of the
     /// inputs, their derivatives by `q`, `v` and the inputs, and the matrix `T` in the rate `ξ̇ = δv + T ξ`
     /// of displacements `ξ`.
@@ -193,7 +193,7 @@ impl Shape {
             Shape::Square(n) | Shape::Inverse(n) => vec![("result", n, n)],
             Shape::Matrix(m, n) => vec![("result", m, n)],
             Shape::Pair(n) => vec![("by_q", n, n), ("by_v", n, n)],
-            Shape::Forward(n) | Shape::CalledForward(n) => {
+            Shape::Forward(n) | Shape::ForwardDerivativesByCalls(n) => {
                 vec![("by_q", n, n), ("by_v", n, n), ("by_tau", n, n)]
             }
             Shape::Linear(n, m) | Shape::CalledLinear(n, m) => {
@@ -203,7 +203,7 @@ impl Shape {
                 vec![("by_q", rows, n), ("by_v", rows, n), ("by_a", rows, n), ("by_u", rows, m)]
             }
             Shape::Hessian(n) => vec![("by_qq", n, n), ("by_qv", n, n), ("by_vv", n, n), ("by_qa", n, n)],
-            Shape::InputHessian(n, m) => vec![
+            Shape::InputPowerHessian(n, m) => vec![
                 ("by_qq", n, n),
                 ("by_qv", n, n),
                 ("by_vv", n, n),
@@ -217,7 +217,7 @@ impl Shape {
 
     /// Returns true for a result that is assembled from results of other functions.
     pub fn is_assembled_from_calls(self) -> bool {
-        matches!(self, Shape::CalledForward(_) | Shape::CalledLinear(..))
+        matches!(self, Shape::ForwardDerivativesByCalls(_) | Shape::CalledLinear(..))
     }
 
     /// Returns the number of outputs of a program for this result.
@@ -231,12 +231,12 @@ impl Shape {
             Shape::Pair(n) => 2 * n * n,
             Shape::Hessian(n) => 4 * n * n,
             Shape::Jacobians(rows, n, m) => rows * (3 * n + m),
-            Shape::InputHessian(n, m) => 3 * n * n + 2 * n * m + m * m,
+            Shape::InputPowerHessian(n, m) => 3 * n * n + 2 * n * m + m * m,
             Shape::Inverse(n) => n * n + border_entry_count(n),
             Shape::Forward(n) => 3 * n * n + border_entry_count(n) + n,
             Shape::Linear(n, m) => 4 * n * n + n * m,
             Shape::Accelerated(n) => n + n * n + border_entry_count(n),
-            Shape::CalledForward(n) => n * structure.known.iter().map(Vec::len).sum::<usize>(),
+            Shape::ForwardDerivativesByCalls(n) => n * structure.known.iter().map(Vec::len).sum::<usize>(),
             Shape::CalledLinear(n, m) => n + 3 * n * n + n * m,
             Shape::Symmetric(_) => structure.entries.len(),
             Shape::Record(record) => record.record_fields().iter().map(|field| field.field_length()).sum(),

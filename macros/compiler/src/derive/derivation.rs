@@ -13,9 +13,9 @@ use crate::expr::{Expr, Graph};
 use crate::kinematics::Joint;
 use crate::lower::{Program, pipeline};
 use crate::mechanics::derivatives::parameters;
-use crate::mechanics::hamilton::Hamilton;
+use crate::mechanics::hamilton::HamiltonEquations;
 use crate::mechanics::limb_contacts::LimbContacts;
-use crate::mechanics::routh::Routh;
+use crate::mechanics::routh::RouthEquations;
 use crate::mechanics::speeds::SpeedTransformation;
 use crate::mechanics::{energy, forces, power};
 use crate::mechanism::{Model, PassiveForces};
@@ -204,13 +204,13 @@ impl<'a, 'g> Derivation<'a, 'g> {
     /// Returns the outputs of a function of the option `hamilton`.
     pub(super) fn hamilton_outputs(
         &self,
-        outputs: impl FnOnce(&Hamilton<'g>) -> Vec<Expr<'g>>,
+        outputs: impl FnOnce(&HamiltonEquations<'g>) -> Vec<Expr<'g>>,
     ) -> Vec<Expr<'g>> {
         self.extras.and_then(|extras| extras.hamilton.as_ref()).map(outputs).unwrap_or_default()
     }
 
     /// Returns the outputs of a function of the option `routh`.
-    fn routh_outputs(&self, outputs: impl FnOnce(&Routh<'g>) -> Vec<Expr<'g>>) -> Vec<Expr<'g>> {
+    fn routh_outputs(&self, outputs: impl FnOnce(&RouthEquations<'g>) -> Vec<Expr<'g>>) -> Vec<Expr<'g>> {
         self.extras.and_then(|extras| extras.routh.as_ref()).map(outputs).unwrap_or_default()
     }
 

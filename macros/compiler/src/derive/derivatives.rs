@@ -71,7 +71,7 @@ impl<'a, 'g> DerivativeFunctions<'a, 'g> {
         if parts.model.acceleration_forces.is_empty() {
             parts.known = invariance::columns_determined_by_invariance(parts.model, &parts.joints);
         }
-        if derivatives::has_constant_subspaces(parts.model) {
+        if derivatives::supports_recursive_derivatives(parts.model) {
             parts.wide = passes.tried_lane_counts(model.nv());
             parts.find_limbs_and_trunk(passes.lanes && specialisation == ParameterSpecialisation::None);
         }
@@ -114,7 +114,7 @@ impl<'a, 'g> DerivativeFunctions<'a, 'g> {
         let DerivativeVariant { model, joints, specialisation, .. } = &self.parts;
         let supported = *specialisation == ParameterSpecialisation::None
             && model.nv() >= BLOCKED_VELOCITIES
-            && derivatives::has_constant_subspaces(model);
+            && derivatives::supports_recursive_derivatives(model);
         supported.then(|| block_loops::cheaper_block_loops(model, joints, program)).flatten()
     }
 
@@ -285,7 +285,7 @@ impl<'a, 'g> DerivativeVariant<'a, 'g> {
         let derivative_program_from_mass_matrix = |mass: &crba::Matrix<'g>, method: DerivationMethod| {
             let mut found =
                 derivatives::linearize_forward_dynamics(self.model, &self.joints, mass, &tau, method);
-            self.known.replace_known_columns(&mut found.forces);
+            self.known.insert_invariant_columns(&mut found.forces);
             self.specialisation
                 .lower_to_program(&[linearization_entries_by_column(&found), found.accelerations].concat())
         };
@@ -306,7 +306,7 @@ impl<'a, 'g> DerivativeVariant<'a, 'g> {
             |mut forces: ForceDerivatives<'g>,
              [inverse, factors]: [crba::Matrix<'g>; 2],
              a: Vec<Expr<'g>>| {
-                self.known.replace_known_columns(&mut forces);
+                self.known.insert_invariant_columns(&mut forces);
                 [force_derivative_entries(&forces), entries_by_column(&inverse), factors.concat(), a].concat()
             };
         let program = self.specialisation.lower_to_program(&concatenated_derivative_outputs(

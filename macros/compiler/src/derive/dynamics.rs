@@ -229,7 +229,7 @@ impl<'g> DynamicsDerivation<'g> {
         let found = both
             .into_iter()
             .filter(|program| !program.outputs.is_empty())
-            .min_by_key(Program::estimated_call_time);
+            .min_by_key(Program::estimated_program_time);
         let in_lanes = cheapest_lane_programs(
             self.specialisation,
             self.choices.iter().flat_map(Variants::articulated_dynamics_in_lanes),

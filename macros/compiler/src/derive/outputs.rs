@@ -22,9 +22,11 @@ pub fn declared_output_functions(model: &Model<'_>, facts: &Facts) -> Vec<Declar
         let follows = touched || output.diagram.is_some() || reactions::contains_reactions(&output.values);
         match (follows, facts.kinematic) {
             (true, true) => Vec::new(),
-            (true, false) if touched => vec![catalogue::contact_force_function(&output.name, size, facts)],
+            (true, false) if touched => {
+                vec![catalogue::contact_force_output_function(&output.name, size, facts)]
+            }
             (true, false) => {
-                vec![catalogue::reaction_function(&output.name, size, output.diagram.is_some(), facts)]
+                vec![catalogue::reaction_output_function(&output.name, size, output.diagram.is_some(), facts)]
             }
             (false, _) => {
                 catalogue::output_functions(&output.name, size, quantities_used_by_output(output), facts)
@@ -87,10 +89,10 @@ fn output_derivatives<'g>(model: &Model<'g>, values: &[Expr<'g>]) -> Vec<Expr<'g
 fn parameter_derivatives<'g>(model: &Model<'g>, values: &[Expr<'g>]) -> Vec<Expr<'g>> {
     let parameter_derivative =
         |k| DirectionalDerivative::with_respect_to(Quantity::Parameter(k).symbol(), model.graph);
-    let differentiated_outputs = |mut d: DirectionalDerivative<'g>| -> Vec<Expr<'g>> {
+    let differentiate_output_values = |mut d: DirectionalDerivative<'g>| -> Vec<Expr<'g>> {
         values.iter().map(|e| d.differentiate(*e)).collect()
     };
-    (0..model.parameters.len()).flat_map(|k| differentiated_outputs(parameter_derivative(k))).collect()
+    (0..model.parameters.len()).flat_map(|k| differentiate_output_values(parameter_derivative(k))).collect()
 }
 
 /// Returns the Jacobian column by column: the derivatives of the output with respect to the velocities, or of

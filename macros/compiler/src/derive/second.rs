@@ -5,7 +5,7 @@ use super::specialisation::ParameterSpecialisation;
 use crate::expr::Expr;
 use crate::kinematics::Joint;
 use crate::lower::Program;
-use crate::mechanics::derivatives::second::{self, ConstraintHessian, Hessian, InputHessian};
+use crate::mechanics::derivatives::second::{self, ConstraintHessian, Hessian, InputPowerHessian};
 use crate::mechanism::Model;
 
 /// Returns the second derivatives of inverse dynamics, by recursion (also in each of the lane counts `wide`)
@@ -47,7 +47,7 @@ pub(super) fn input_power_hessian<'g>(
     tau: &[Expr<'g>],
     specialisation: ParameterSpecialisation,
 ) -> Program {
-    let InputHessian { state: by_state, qu, vu, uu } = second::hessian_of_input_power(model, tau);
+    let InputPowerHessian { state: by_state, qu, vu, uu } = second::hessian_of_input_power(model, tau);
     let [qq, qv, vv, _] = state_hessian_blocks(&by_state);
     let blocks = [qq, qv, vv, entries_by_column(&qu), entries_by_column(&vu), entries_by_column(&uu)];
     specialisation.lower_to_program(&blocks.concat())

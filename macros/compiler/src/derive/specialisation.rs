@@ -35,12 +35,15 @@ impl ParameterSpecialisation {
     /// Returns the program with the fewest operations among equivalent candidates; among equal operation
     /// counts, the one with the fewest instructions.
     pub fn cheapest_program<'g>(self, lists: impl Iterator<Item = Candidate<'g>>) -> Program {
-        self.cheapest_candidate(lists).1
+        self.cheapest_program_with_index(lists).1
     }
 
     /// Returns the program with the fewest operations among equivalent candidates, with the candidate's
     /// index.
-    pub fn cheapest_candidate<'g>(self, lists: impl Iterator<Item = Candidate<'g>>) -> (usize, Program) {
+    pub fn cheapest_program_with_index<'g>(
+        self,
+        lists: impl Iterator<Item = Candidate<'g>>,
+    ) -> (usize, Program) {
         let all = candidates_with_fewest_operations(lists);
         let mut programs: Vec<(usize, Program)> =
             all.iter().map(|(k, list)| (*k, self.lower_to_program(list))).collect();

@@ -9,7 +9,7 @@ use crate::expr::Expr;
 use crate::expr::diff::DirectionalDerivative;
 use crate::expr::replace::substitute_symbols_in_all;
 use crate::kinematics::symbols_in;
-use crate::mechanics::derivatives::second::{self as hessian, Hessian, InputHessian};
+use crate::mechanics::derivatives::second::{self as hessian, Hessian, InputPowerHessian};
 use crate::mechanics::derivatives::{
     ForceDerivatives, MatrixFactorisation, analytic, subtract_matrix, symbolic,
 };
@@ -266,7 +266,7 @@ impl<'g> Derivation<'_, 'g> {
                 outputs
             }
             GeneratedId::GeneralizedForcesSecondDerivatives => {
-                let InputHessian { state, qu, vu, uu } =
+                let InputPowerHessian { state, qu, vu, uu } =
                     hessian::hessian_of_input_power(native, &self.input_forces(speeds));
                 let [qq, qv, vv, _] = second::state_hessian_blocks(&hessian_in_speeds(state));
                 [

@@ -2,7 +2,7 @@
 //! call then states the missing option or property.
 
 use super::interface::{ALLOW, AbsentFunctions, ImplGenerics, Interface};
-use super::signature::Signature;
+use super::signature::SignatureContext;
 use crate::catalogue::{self, BY_PARAMETERS, DERIVATIVES, Facts, FunctionNeed, JACOBIAN, Row};
 use crate::derive::Function;
 use crate::syntax::RequestOption;
@@ -94,7 +94,7 @@ impl AbsentFunctions {
 }
 
 /// Writes declarations of all functions and traits that the struct lacks, so that calls get an explanation.
-pub fn write_missing_item_declarations(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
+pub fn write_missing_item_declarations(out: &mut String, i: &Interface<'_>, s: &SignatureContext<'_>) {
     let name = i.shell.ident.to_string();
     for absent in &i.absent {
         write_absent_declarations(out, &name, absent, &ImplGenerics::new(i, s));
@@ -102,7 +102,12 @@ pub fn write_missing_item_declarations(out: &mut String, i: &Interface<'_>, s: &
 }
 
 /// Writes declarations of everything that the prepared struct `name` lacks.
-pub fn write_items_absent_after_prepare(out: &mut String, name: &str, i: &Interface<'_>, s: &Signature<'_>) {
+pub fn write_items_absent_after_prepare(
+    out: &mut String,
+    name: &str,
+    i: &Interface<'_>,
+    s: &SignatureContext<'_>,
+) {
     for absent in i.absent.iter().chain([
         &AbsentFunctions::frame_items_absent_after_prepare(),
         &AbsentFunctions::parameter_functions_absent_after_prepare(&i.facts),

@@ -1,7 +1,7 @@
 //! Calls of the runtime's loops over blocks of links.
 
 use super::pieces::{ExpressionPiece, Statement, array_expression};
-use super::signature::{Signature, matrix_argument_names};
+use super::signature::{SignatureContext, result_matrix_names};
 use crate::derive::{BlockLoopDerivatives, Function};
 use crate::mechanism::{BLOCK_LENGTH, LINK_QUANTITIES, LinkBlock, MASS_PROPERTIES};
 use std::collections::BTreeMap;
@@ -63,14 +63,14 @@ pub fn outputs_in_loop_call<'a>(
 pub fn call_of_loops(
     f: &Function,
     loops: &BlockLoopDerivatives,
-    s: &Signature<'_>,
+    s: &SignatureContext<'_>,
     outputs: &[ExpressionPiece],
 ) -> String {
     let texts: Vec<&str> =
         outputs_in_loop_call(loops, outputs).iter().map(|piece| piece.text.as_str()).collect();
     let (inertias, others) = texts.split_at(texts.len().min(loops.mass_property_output_count()));
     let (ground, passive) = others.split_at(others.len().min(3));
-    let matrices = matrix_argument_names(f);
+    let matrices = result_matrix_names(f);
     let [by_q, by_v] = matrices.as_slice() else { return String::new() };
     let blocks: Vec<String> = loops.blocks.iter().map(block_expression).collect();
     let mut text = format!(

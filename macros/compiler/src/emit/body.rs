@@ -5,7 +5,7 @@
 use super::angles::{SineCosineCalls, WIDTH};
 use super::instruction::{BodyWriter, BuildKind};
 use super::pieces::{ExpressionPiece, OutputTexts, Statement, storage_constructor};
-use super::signature::{Signature, matrix_argument_names, variant_matrix_argument_count};
+use super::signature::{SignatureContext, result_matrix_names, variant_matrix_argument_count};
 use super::statements::{BLOCK, write_body_statement, write_statements};
 use super::{block_loops, matrices, stores};
 use crate::catalogue::{Argument, CalledFunction, Shape};
@@ -21,7 +21,13 @@ const LINE: usize = 72;
 
 /// Writes the function body without its braces. If `is_parameter` is true, the arithmetic `Ops` is a type
 /// parameter of the function; otherwise `Ops` is the arithmetic of the compilation target.
-pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>, is_parameter: bool, build: BuildKind) {
+pub fn write_body(
+    out: &mut String,
+    f: &Function,
+    s: &SignatureContext<'_>,
+    is_parameter: bool,
+    build: BuildKind,
+) {
     if let Some(count) = variant_matrix_argument_count(f) {
         out.push_str(&matrices::body_calling_matrix_argument_variant(f, count, s));
         return;
@@ -74,7 +80,7 @@ pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>, is_paramete
     }
     let is_zero_output = |k: usize| program.outputs.get(k).is_none_or(|o| *o == Operand::Const(0.0));
     let results = OutputTexts { pieces: &outputs, is_zero: &is_zero_output };
-    if !matrix_argument_names(f).is_empty() {
+    if !result_matrix_names(f).is_empty() {
         let (statements, left) = stores::insert_result_stores(f, program, rest, &results);
         write_statements(out, &statements, &left);
         out.push_str(&matrices::matrix_function_epilogue(f, s, &results));
@@ -198,7 +204,12 @@ impl BodyWriter<'_> {
 
 /// Writes the bindings of the used entries of arguments and of results of called functions, and of their
 /// gathers.
-fn write_input_bindings(out: &mut String, arguments: &[Argument], s: &Signature<'_>, w: &BodyWriter<'_>) {
+fn write_input_bindings(
+    out: &mut String,
+    arguments: &[Argument],
+    s: &SignatureContext<'_>,
+    w: &BodyWriter<'_>,
+) {
     let in_lanes = s.scalar.uses_batch_lanes();
     let used = w.program.used_symbols();
     for argument in arguments {
@@ -219,7 +230,7 @@ fn write_input_bindings(out: &mut String, arguments: &[Argument], s: &Signature<
             Argument::Called(f) => {
                 let arguments = s.with_time_argument(f.arguments());
                 let names: Vec<&str> = arguments.iter().map(|a| a.argument_name()).collect();
-                format!("self.{}{}({})", f.function_name(), s.call_suffix(), names.join(", "))
+                format!("self.{}{}({})", f.function_name(), s.lane_function_suffix(), names.join(", "))
             }
             _ => argument.argument_name().to_string(),
         };
@@ -258,7 +269,7 @@ fn argument_pattern(argument: Argument, n: usize, used: &BTreeSet<Symbol>) -> Op
     Some(list.join(", "))
 }
 
-fn write_result(out: &mut String, f: &Function, outputs: &OutputTexts<'_>, s: &Signature<'_>) {
+fn write_result(out: &mut String, f: &Function, outputs: &OutputTexts<'_>, s: &SignatureContext<'_>) {
     match f.shape {
         Shape::Scalar => outputs.pieces.iter().for_each(|piece| out.push_str(&piece.text)),
         Shape::Array(_) => out.push_str(&outputs.array_of_outputs(0..outputs.pieces.len())),
@@ -281,11 +292,11 @@ fn write_result(out: &mut String, f: &Function, outputs: &OutputTexts<'_>, s: &S
         | Shape::Pair(_)
         | Shape::Hessian(_)
         | Shape::Jacobians(..)
-        | Shape::InputHessian(..)
+        | Shape::InputPowerHessian(..)
         | Shape::Forward(_)
         | Shape::Linear(..)
         | Shape::Accelerated(_)
-        | Shape::CalledForward(_)
+        | Shape::ForwardDerivativesByCalls(_)
         | Shape::CalledLinear(..) => out.push_str(&matrices::result_expression_text(f, s, outputs)),
     }
 }

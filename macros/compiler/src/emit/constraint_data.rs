@@ -64,7 +64,7 @@ impl Constraints {
             groups: model.constraints.iter().map(|c| c.group).collect(),
             slipping: indices_of_constraints(|c| !c.friction.is_empty()),
             determining: indices_of_constraints(|c| c.determines),
-            overdetermined: model.is_overconstrained(),
+            overdetermined: model.has_unpruned_redundancy(),
             independent: model.dependent.is_some(),
             angles: (0..model.nq()).filter(|k| model.units.configuration[*k] == "rad").collect(),
             turns: model.units.velocities.iter().map(|unit| unit == "rad/s").collect(),

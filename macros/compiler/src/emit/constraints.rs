@@ -1,7 +1,7 @@
 //! Generated code of mechanisms with constraints: constrained dynamics around the generated elimination,
 //! assembly and projection.
 
-use super::signature::Signature;
+use super::signature::SignatureContext;
 use crate::catalogue::{Argument, GeneratedId, Shape};
 use crate::derive::Function;
 use crate::mechanism::DegreeOfFreedomCounts;
@@ -10,7 +10,7 @@ use std::fmt::Write;
 pub use super::constraint_data::Constraints;
 
 /// Source text of the types and arguments of constrained functions.
-struct ConstraintSourceTexts {
+struct ConstrainedSignatureTexts {
     /// Rust type of a configuration.
     q: String,
     /// Rust type of a velocity.
@@ -27,10 +27,10 @@ struct ConstraintSourceTexts {
     any: String,
 }
 
-impl ConstraintSourceTexts {
-    fn new(c: &Constraints, s: &Signature<'_>) -> ConstraintSourceTexts {
+impl ConstrainedSignatureTexts {
+    fn new(c: &Constraints, s: &SignatureContext<'_>) -> ConstrainedSignatureTexts {
         let scalar = s.scalar.scalar_name();
-        ConstraintSourceTexts {
+        ConstrainedSignatureTexts {
             q: s.vector_type(s.nq),
             v: s.vector_type(s.nv),
             residuals: s.vector_type(c.holonomic),
@@ -69,11 +69,11 @@ pub fn write_constants(out: &mut String, c: &Constraints) {
 
 /// Writes the assembly functions of a mechanism without inertia, which does not implement the trait
 /// `Constrained`.
-pub fn write_kinematic_assembly(out: &mut String, c: &Constraints, s: &Signature<'_>) {
+pub fn write_kinematic_assembly(out: &mut String, c: &Constraints, s: &SignatureContext<'_>) {
     if c.names.is_empty() {
         return;
     }
-    let ConstraintSourceTexts { q, v, pass, .. } = ConstraintSourceTexts::new(c, s);
+    let ConstrainedSignatureTexts { q, v, pass, .. } = ConstrainedSignatureTexts::new(c, s);
     let loops = format!(
         "let loops = ::linkwork::__private::Loops {{
             names: Self::CONSTRAINTS,
@@ -100,8 +100,13 @@ pub fn write_kinematic_assembly(out: &mut String, c: &Constraints, s: &Signature
 }
 
 /// Writes `assemble`, `assemble_in_mode` and `assembly_mode` with the given bodies.
-fn write_assembly_functions(out: &mut String, c: &Constraints, s: &Signature<'_>, bodies: &[String; 3]) {
-    let ConstraintSourceTexts { q, t, .. } = ConstraintSourceTexts::new(c, s);
+fn write_assembly_functions(
+    out: &mut String,
+    c: &Constraints,
+    s: &SignatureContext<'_>,
+    bodies: &[String; 3],
+) {
+    let ConstrainedSignatureTexts { q, t, .. } = ConstrainedSignatureTexts::new(c, s);
     let [any, one, mode] = bodies;
     let _ = writeln!(
         out,
@@ -132,11 +137,12 @@ fn write_assembly_functions(out: &mut String, c: &Constraints, s: &Signature<'_>
 
 /// Writes the inherent functions of a mechanism with constraints: dynamics, assembly, completion, projection
 /// and derivatives.
-pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], s: &Signature<'_>) {
+pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], s: &SignatureContext<'_>) {
     if c.names.is_empty() {
         return;
     }
-    let ConstraintSourceTexts { q, v, multipliers, t, pass, any, .. } = ConstraintSourceTexts::new(c, s);
+    let ConstrainedSignatureTexts { q, v, multipliers, t, pass, any, .. } =
+        ConstrainedSignatureTexts::new(c, s);
     let (nv, nc) = (s.nv, c.names.len());
     let scalar = s.scalar.scalar_name();
     let format_constrained_call = |function: &str, more: &str| {
@@ -237,8 +243,8 @@ pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], 
 }
 
 /// Writes the function `constrained_inverse_dynamics`.
-fn write_inverse_dynamics(out: &mut String, c: &Constraints, s: &Signature<'_>) {
-    let ConstraintSourceTexts { q, v, multipliers, t, any, .. } = ConstraintSourceTexts::new(c, s);
+fn write_inverse_dynamics(out: &mut String, c: &Constraints, s: &SignatureContext<'_>) {
+    let ConstrainedSignatureTexts { q, v, multipliers, t, any, .. } = ConstrainedSignatureTexts::new(c, s);
     let _ = writeln!(
         out,
         "/// Inverse dynamics under the constraints: returns the generalized forces `τ` at the velocities \
@@ -279,8 +285,9 @@ fn constrained_solution_expression(c: &Constraints, independent: bool, careful: 
 }
 
 /// Returns the function `constrained_dynamics` of a mechanism without sliding contacts.
-fn constrained_dynamics_source(c: &Constraints, s: &Signature<'_>) -> String {
-    let ConstraintSourceTexts { q, v, multipliers, t, pass, any, .. } = ConstraintSourceTexts::new(c, s);
+fn constrained_dynamics_source(c: &Constraints, s: &SignatureContext<'_>) -> String {
+    let ConstrainedSignatureTexts { q, v, multipliers, t, pass, any, .. } =
+        ConstrainedSignatureTexts::new(c, s);
     let careful = format!("rank_revealing_dynamics(self, &Self::__STRUCTURE, {any}, q, v, tau)");
     let solution = constrained_solution_expression(c, c.independent, &careful);
     format!(
@@ -295,8 +302,8 @@ fn constrained_dynamics_source(c: &Constraints, s: &Signature<'_>) -> String {
 }
 
 /// Returns the functions of constrained dynamics of a mechanism with sliding contacts.
-fn slipping_dynamics_source(c: &Constraints, s: &Signature<'_>) -> String {
-    let ConstraintSourceTexts { q, v, multipliers, t, pass, .. } = ConstraintSourceTexts::new(c, s);
+fn slipping_dynamics_source(c: &Constraints, s: &SignatureContext<'_>) -> String {
+    let ConstrainedSignatureTexts { q, v, multipliers, t, pass, .. } = ConstrainedSignatureTexts::new(c, s);
     let (scalar, slipping) = (s.scalar.scalar_name(), &c.slipping);
     format!(
         "/// Returns the acceleration and the multipliers `λ` of the constraints, in the units of the table \
@@ -323,8 +330,8 @@ fn slipping_dynamics_source(c: &Constraints, s: &Signature<'_>) -> String {
 }
 
 /// Writes the functions for derivatives of constrained motion and for its linearisation.
-fn write_constrained_derivatives(out: &mut String, c: &Constraints, s: &Signature<'_>) {
-    let ConstraintSourceTexts { q, v, t, pass, .. } = ConstraintSourceTexts::new(c, s);
+fn write_constrained_derivatives(out: &mut String, c: &Constraints, s: &SignatureContext<'_>) {
+    let ConstrainedSignatureTexts { q, v, t, pass, .. } = ConstrainedSignatureTexts::new(c, s);
     let (scalar, nv, nc, nu, nh) = (s.scalar.scalar_name(), s.nv, c.names.len(), s.nu, c.holonomic);
     let DegreeOfFreedomCounts { coordinates: np, velocities: ns } = c.freedom;
     let square = s.shape_type(Shape::Square(nv));
@@ -396,11 +403,11 @@ fn write_constrained_derivatives(out: &mut String, c: &Constraints, s: &Signatur
 }
 
 /// Returns the generated function for derivatives of multipliers, or an empty text if it is not available.
-fn multiplier_derivatives_source(c: &Constraints, s: &Signature<'_>) -> String {
+fn multiplier_derivatives_source(c: &Constraints, s: &SignatureContext<'_>) -> String {
     if !are_constraints_differentiable(c) {
         return String::new();
     }
-    let ConstraintSourceTexts { q, v, t, any, .. } = ConstraintSourceTexts::new(c, s);
+    let ConstrainedSignatureTexts { q, v, t, any, .. } = ConstrainedSignatureTexts::new(c, s);
     let rows = s.shape_type(Shape::Matrix(c.names.len(), s.nv));
     format!(
         "/// `(∂λ/∂q, ∂λ/∂v, ∂λ/∂τ)` of the multipliers of [`constrained_dynamics`](Self::constrained_dynamics): a row for each constraint.
@@ -416,11 +423,11 @@ fn multiplier_derivatives_source(c: &Constraints, s: &Signature<'_>) -> String {
 }
 
 /// Writes the integrator hooks that make states satisfy the constraints.
-pub fn write_projection_hooks(out: &mut String, c: &Constraints, s: &Signature<'_>) {
+pub fn write_projection_hooks(out: &mut String, c: &Constraints, s: &SignatureContext<'_>) {
     if c.names.is_empty() {
         return;
     }
-    let ConstraintSourceTexts { q, v, .. } = ConstraintSourceTexts::new(c, s);
+    let ConstrainedSignatureTexts { q, v, .. } = ConstrainedSignatureTexts::new(c, s);
     let _ = writeln!(
         out,
         "const CONSTRAINED: bool = true;
@@ -443,11 +450,11 @@ pub fn write_projection_hooks(out: &mut String, c: &Constraints, s: &Signature<'
 }
 
 /// Writes the trait's forward dynamics that reports an error, for mechanisms with sliding contacts.
-pub fn write_try_forward_dynamics(out: &mut String, c: &Constraints, s: &Signature<'_>) {
+pub fn write_try_forward_dynamics(out: &mut String, c: &Constraints, s: &SignatureContext<'_>) {
     if c.slipping.is_empty() {
         return;
     }
-    let ConstraintSourceTexts { q, v, pass, .. } = ConstraintSourceTexts::new(c, s);
+    let ConstrainedSignatureTexts { q, v, pass, .. } = ConstrainedSignatureTexts::new(c, s);
     let _ = writeln!(
         out,
         "#[inline]\nfn try_forward_dynamics(&self, t: {scalar}, q: &{q}, v: &{v}, tau: &{v}) -> \
@@ -459,8 +466,9 @@ pub fn write_try_forward_dynamics(out: &mut String, c: &Constraints, s: &Signatu
 }
 
 /// Writes the functions of the trait `Constrained`, which call the inherent functions.
-pub fn write_trait(out: &mut String, c: &Constraints, s: &Signature<'_>) {
-    let ConstraintSourceTexts { q, v, residuals, multipliers, pass, .. } = ConstraintSourceTexts::new(c, s);
+pub fn write_trait(out: &mut String, c: &Constraints, s: &SignatureContext<'_>) {
+    let ConstrainedSignatureTexts { q, v, residuals, multipliers, pass, .. } =
+        ConstrainedSignatureTexts::new(c, s);
     let (scalar, nv, nc) = (s.scalar.scalar_name(), s.nv, c.names.len());
     let t = Argument::T.argument_name();
     let _ = writeln!(
@@ -487,7 +495,7 @@ pub fn write_trait(out: &mut String, c: &Constraints, s: &Signature<'_>) {
 
 /// Writes the derivatives of the stabilised motion, in which constraint violations decay. Integration methods
 /// call them through the trait `Constrained`.
-pub fn write_stabilized_motion_derivatives(out: &mut String, s: &Signature<'_>) {
+pub fn write_stabilized_motion_derivatives(out: &mut String, s: &SignatureContext<'_>) {
     let (scalar, q, v, u) =
         (s.scalar.scalar_name(), s.vector_type(s.nq), s.vector_type(s.nv), s.vector_type(s.nu));
     let _ = writeln!(
@@ -509,7 +517,7 @@ pub fn are_constraints_differentiable(c: &Constraints) -> bool {
 
 /// Writes the function with which generic code gets from the trait `Derivatives` to the trait
 /// `ConstrainedDerivatives`.
-pub fn write_visit_constraints(out: &mut String, c: &Constraints, s: &Signature<'_>) {
+pub fn write_visit_constraints(out: &mut String, c: &Constraints, s: &SignatureContext<'_>) {
     if are_constraints_differentiable(c) {
         let _ = writeln!(
             out,
@@ -526,8 +534,8 @@ pub fn write_visit_constraints(out: &mut String, c: &Constraints, s: &Signature<
 }
 
 /// Writes `equation_derivatives`, the function of the trait `ConstrainedDerivatives` without a default.
-pub fn write_derivatives_trait(out: &mut String, c: &Constraints, s: &Signature<'_>) {
-    let ConstraintSourceTexts { q, v, multipliers, pass, .. } = ConstraintSourceTexts::new(c, s);
+pub fn write_derivatives_trait(out: &mut String, c: &Constraints, s: &SignatureContext<'_>) {
+    let ConstrainedSignatureTexts { q, v, multipliers, pass, .. } = ConstrainedSignatureTexts::new(c, s);
     let (scalar, nv, nc) = (s.scalar.scalar_name(), s.nv, c.names.len());
     let t = Argument::T.argument_name();
     let _ = writeln!(

@@ -1,7 +1,7 @@
 //! Code generation for mechanisms with unilateral contacts.
 
 use super::interface::Interface;
-use super::signature::Signature;
+use super::signature::SignatureContext;
 use crate::catalogue::{ContactCounts, FunctionNeed, Shape};
 use crate::mechanism::{Contact, ContactVelocityDependence, Model};
 use std::fmt::Write;
@@ -88,7 +88,7 @@ pub fn write_constants(out: &mut String, contacts: &[UnilateralContact]) {
 }
 
 /// Writes the functions of the trait `Contacts`.
-pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
+pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &SignatureContext<'_>) {
     let ContactCounts { count, rates: rows } = i.facts.contacts;
     let (scalar, q, v, nv) = (s.scalar.scalar_name(), s.vector_type(s.nq), s.vector_type(s.nv), s.nv);
     let pass = if s.time { "t, " } else { "" };
@@ -174,7 +174,7 @@ pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
 }
 
 /// Writes `contact_derivatives`, the function of the trait `ContactDerivatives`.
-pub fn write_derivatives(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
+pub fn write_derivatives(out: &mut String, i: &Interface<'_>, s: &SignatureContext<'_>) {
     let rows = i.facts.contacts.rates;
     let (scalar, q, v, nv) = (s.scalar.scalar_name(), s.vector_type(s.nq), s.vector_type(s.nv), s.nv);
     let pass = if s.time { "t, " } else { "" };
@@ -190,7 +190,7 @@ pub fn write_derivatives(out: &mut String, i: &Interface<'_>, s: &Signature<'_>)
 }
 
 /// Writes the integrator hooks of mechanisms with contacts.
-pub fn write_contact_integrator_hooks(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
+pub fn write_contact_integrator_hooks(out: &mut String, i: &Interface<'_>, s: &SignatureContext<'_>) {
     if i.contacts.is_empty() {
         return;
     }
@@ -217,7 +217,7 @@ pub fn write_contact_integrator_hooks(out: &mut String, i: &Interface<'_>, s: &S
 
 /// Returns the hooks that express a velocity in the axes, and in the generalized speeds, of another
 /// configuration, its rate of change, and the linear velocities of free joints.
-fn velocity_transport_hooks(i: &Interface<'_>, s: &Signature<'_>) -> String {
+fn velocity_transport_hooks(i: &Interface<'_>, s: &SignatureContext<'_>) -> String {
     let (scalar, q, v) = (s.scalar.scalar_name(), s.vector_type(s.nq), s.vector_type(s.nv));
     if i.facts.speeds {
         return format!(

@@ -2,7 +2,7 @@
 //! equations of motion: derivatives on the configuration space and those of the forces of inputs.
 
 use super::interface::Interface;
-use super::signature::Signature;
+use super::signature::SignatureContext;
 use crate::catalogue::{Argument, GeneratedId, Shape};
 use crate::derive::Function;
 use crate::lower::Operand;
@@ -16,7 +16,7 @@ pub fn write_configuration_and_input_derivatives(
     charts: Option<&[Chart]>,
     functions: &[Function],
     i: &Interface<'_>,
-    s: &Signature<'_>,
+    s: &SignatureContext<'_>,
 ) {
     if !i.facts.requests.derivatives {
         return;
@@ -106,7 +106,7 @@ pub fn write_configuration_and_input_derivatives(
 /// Returns the index of the velocity along which each input acts, if every input is exactly one entry of the
 /// generalized forces. Without inputs these forces are zero; if their derivatives by the inputs are constant,
 /// the derivatives do not depend on the state.
-fn velocity_driven_by_each_input(f: &Function, s: &Signature<'_>) -> Option<Vec<usize>> {
+fn velocity_driven_by_each_input(f: &Function, s: &SignatureContext<'_>) -> Option<Vec<usize>> {
     let by_inputs = f.program.outputs.get(s.nv + 2 * s.nv * s.nv..)?;
     let is_constant_equal_to = |o: &Operand, x: f64| *o == Operand::Const(x);
     let columns = (0..s.nu).map(|k| {
@@ -125,7 +125,7 @@ pub fn write_forward_second_derivatives(
     out: &mut String,
     charts: Option<&[Chart]>,
     i: &Interface<'_>,
-    s: &Signature<'_>,
+    s: &SignatureContext<'_>,
 ) {
     if !has_dynamics_second_derivatives(i) {
         return;
@@ -181,12 +181,16 @@ pub fn has_dynamics_second_derivatives(i: &Interface<'_>) -> bool {
 
 /// Returns true if the configuration space is curved and the second derivatives of the rate of displacements
 /// are therefore generated. They are not generated with generalized speeds.
-fn has_curved_configurations(i: &Interface<'_>, s: &Signature<'_>) -> bool {
+fn has_curved_configurations(i: &Interface<'_>, s: &SignatureContext<'_>) -> bool {
     s.nq != s.nv && !i.facts.speeds
 }
 
 /// Writes the second derivatives of the rate of displacements.
-fn write_displacement_rate_second_derivatives(out: &mut String, charts: Option<&[Chart]>, s: &Signature<'_>) {
+fn write_displacement_rate_second_derivatives(
+    out: &mut String,
+    charts: Option<&[Chart]>,
+    s: &SignatureContext<'_>,
+) {
     let (v, square) = (s.vector_type(s.nv), s.shape_type(Shape::Square(s.nv)));
     let _ = writeln!(
         out,
@@ -204,7 +208,7 @@ fn write_displacement_rate_second_derivatives(out: &mut String, charts: Option<&
 }
 
 /// Writes `equation_second_derivatives`, the function of the trait `ConstrainedSecondDerivatives`.
-pub fn write_constrained_second_derivatives_trait(out: &mut String, nc: usize, s: &Signature<'_>) {
+pub fn write_constrained_second_derivatives_trait(out: &mut String, nc: usize, s: &SignatureContext<'_>) {
     let (scalar, nv) = (s.scalar.scalar_name(), s.nv);
     let (q, v, multipliers) = (s.vector_type(s.nq), s.vector_type(nv), s.vector_type(nc));
     let (t, pass) = (Argument::T.argument_name(), if s.time { "t, " } else { "" });
@@ -258,7 +262,7 @@ fn write_joint_derivative_blocks(out: &mut String, name: &str, of: &[&str], char
 }
 
 /// Writes the functions of the trait `SecondDerivatives`, which call the inherent functions.
-pub fn write_second_derivatives_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
+pub fn write_second_derivatives_trait(out: &mut String, i: &Interface<'_>, s: &SignatureContext<'_>) {
     use Argument::{A, Q, Tau, U, V};
     if i.facts.constraints.is_some() {
         let _ = writeln!(
@@ -288,7 +292,7 @@ pub fn write_second_derivatives_trait(out: &mut String, i: &Interface<'_>, s: &S
     for (name, third, shape) in [
         ("inverse_dynamics_second_derivatives", A, Shape::Hessian(n)),
         ("forward_dynamics_second_derivatives", Tau, Shape::Hessian(n)),
-        ("generalized_forces_second_derivatives", U, Shape::InputHessian(n, s.nu)),
+        ("generalized_forces_second_derivatives", U, Shape::InputPowerHessian(n, s.nu)),
     ] {
         let arguments = [Q, V, third, Argument::Factors(n)];
         let names: Vec<&str> = s.with_time_argument(&arguments).iter().map(|a| a.argument_name()).collect();
@@ -303,7 +307,7 @@ pub fn write_second_derivatives_trait(out: &mut String, i: &Interface<'_>, s: &S
 }
 
 /// Writes the functions of the trait `Derivatives`, which call the inherent functions.
-pub fn write_derivatives_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
+pub fn write_derivatives_trait(out: &mut String, i: &Interface<'_>, s: &SignatureContext<'_>) {
     use Argument::{A, Q, Tau, U, V};
     let (v, square) = (s.vector_type(s.nv), s.shape_type(Shape::Square(s.nv)));
     if i.facts.speeds {
@@ -352,7 +356,7 @@ pub fn write_derivatives_trait(out: &mut String, i: &Interface<'_>, s: &Signatur
 }
 
 /// Writes the hook with the derivatives of accelerations under inputs, for implicit integration methods.
-pub fn write_acceleration_derivative_hook(out: &mut String, s: &Signature<'_>) {
+pub fn write_acceleration_derivative_hook(out: &mut String, s: &SignatureContext<'_>) {
     use Argument::{Q, U, V};
     let _ = writeln!(
         out,

@@ -6,7 +6,7 @@ use super::function::{write_function, write_function_head};
 use super::instruction::BuildKind;
 use super::interface::{ALLOW, ImplGenerics};
 use super::lanes;
-use super::signature::{Signature, variant_matrix_argument_count};
+use super::signature::{SignatureContext, variant_matrix_argument_count};
 use crate::derive::Function;
 use crate::machine::DISPATCHED_OPERATIONS;
 use std::fmt::Write;
@@ -16,15 +16,15 @@ use std::fmt::Write;
 const LARGEST: usize = 5000;
 
 /// Bodies of the functions of a type that select their arithmetic at run time.
-pub struct DispatchedBodies {
+pub struct ArithmeticDispatchedBodies {
     /// True if functions may select their arithmetic at run time.
     wanted: bool,
     /// Function bodies that have been added so far.
-    list: Vec<GenericBody>,
+    list: Vec<ArithmeticGenericBody>,
 }
 
 /// Body of a large function, generic over the arithmetic.
-struct GenericBody {
+struct ArithmeticGenericBody {
     /// Types of the arguments, as the text of a tuple.
     types: String,
     /// Names of the arguments, as the text of a tuple.
@@ -47,14 +47,14 @@ fn dispatches_at_run_time(f: &Function) -> bool {
         && (f.shape.is_assembled_from_calls() || f.program.instructions.len() >= DISPATCHED_OPERATIONS)
 }
 
-impl DispatchedBodies {
+impl ArithmeticDispatchedBodies {
     /// Returns an empty list of function bodies, which stays empty if `wanted` is false.
-    pub fn new(wanted: bool) -> DispatchedBodies {
-        DispatchedBodies { wanted, list: Vec::new() }
+    pub fn new(wanted: bool) -> ArithmeticDispatchedBodies {
+        ArithmeticDispatchedBodies { wanted, list: Vec::new() }
     }
 
     /// Writes a function. The body of a large function is added to the list instead.
-    pub fn write_function(&mut self, out: &mut String, f: &Function, s: &Signature<'_>) {
+    pub fn write_function(&mut self, out: &mut String, f: &Function, s: &SignatureContext<'_>) {
         // The functions of one state and of several states are equally large.
         if !self.wanted || !dispatches_at_run_time(f) {
             return write_function(out, f, s, false);
@@ -83,7 +83,7 @@ impl DispatchedBodies {
                 Some(text)
             }
         };
-        self.list.push(GenericBody {
+        self.list.push(ArithmeticGenericBody {
             types,
             names,
             result: s.result_type(f),
@@ -97,7 +97,7 @@ impl DispatchedBodies {
     pub fn write_function_bodies(&self, out: &mut String, name: &str, head: &ImplGenerics) {
         let ImplGenerics { generics, arguments, bounds } = head;
         for (k, body) in self.list.iter().enumerate() {
-            let GenericBody { types, names, result, text, debug, .. } = body;
+            let ArithmeticGenericBody { types, names, result, text, debug, .. } = body;
             let own =
                 generics.trim().trim_start_matches('<').trim_end_matches('>').trim().trim_end_matches(',');
             let lanes = if body.simd { "const LANES: usize" } else { "" };

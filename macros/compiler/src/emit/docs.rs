@@ -135,7 +135,7 @@ pub fn operation_count_table(functions: &[Function]) -> String {
     let mut lines = String::new();
     let mut write_operation_count_row = |name: &str, program: &Program| {
         let c = program.counts;
-        let (held, branches) = (program.max_live(), program.possible_branch_count());
+        let (held, branches) = (program.max_live(), program.possibly_branching_instruction_count());
         let _ = writeln!(
             lines,
             "| {name} | {} | {} | {} | {} | {held} | {branches} |",

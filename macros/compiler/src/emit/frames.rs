@@ -4,7 +4,7 @@
 use super::body::write_body;
 use super::instruction::BuildKind;
 use super::interface::{ALLOW, ImplGenerics};
-use super::signature::Signature;
+use super::signature::SignatureContext;
 use crate::catalogue::Argument;
 use crate::derive::{FrameRecursionPrograms, Function, LinkRecursionPrograms};
 use crate::lower::Program;
@@ -22,7 +22,7 @@ pub fn write_frames(
     head: &ImplGenerics,
     (links, frames): (&[LinkRecursionPrograms], &[FrameRecursionPrograms]),
     speeds: bool,
-    s: &Signature<'_>,
+    s: &SignatureContext<'_>,
 ) {
     let ImplGenerics { generics, arguments, bounds } = head;
     let steps = kinematic_step_methods(links, frames, s);
@@ -79,7 +79,7 @@ impl FrameStepMethods {
 fn kinematic_step_methods(
     links: &[LinkRecursionPrograms],
     frames: &[FrameRecursionPrograms],
-    s: &Signature<'_>,
+    s: &SignatureContext<'_>,
 ) -> FrameStepMethods {
     let mut steps = FrameStepMethods::default();
     let mut add_kinematic_step = |name: String, arguments: Vec<Argument>, n: usize, program: &Program| {
@@ -119,7 +119,7 @@ fn kinematic_step_methods(
         add_kinematic_step(format!("__link{k}_columns"), columns, 6 * link.velocities.len(), &link.columns);
     }
     for (k, frame) in frames.iter().enumerate() {
-        let link_argument = |n: usize| {
+        let link_quantity_arguments = |n: usize| {
             frame
                 .link
                 .map(|_| Argument::Given("p", SuppliedQuantity::Parent, n))
@@ -127,10 +127,20 @@ fn kinematic_step_methods(
                 .collect::<Vec<_>>()
         };
         if !frame.is_link {
-            add_kinematic_step(format!("__frame{k}_placement"), link_argument(12), 12, &frame.placement);
+            add_kinematic_step(
+                format!("__frame{k}_placement"),
+                link_quantity_arguments(12),
+                12,
+                &frame.placement,
+            );
         }
-        add_kinematic_step(format!("__frame{k}_twist"), link_argument(18), 6, &frame.twist);
-        add_kinematic_step(format!("__frame{k}_acceleration"), link_argument(24), 6, &frame.acceleration);
+        add_kinematic_step(format!("__frame{k}_twist"), link_quantity_arguments(18), 6, &frame.twist);
+        add_kinematic_step(
+            format!("__frame{k}_acceleration"),
+            link_quantity_arguments(24),
+            6,
+            &frame.acceleration,
+        );
     }
     for (k, link) in links.iter().enumerate() {
         add_path_kinematics_methods(&mut steps, k, link, s);
@@ -140,7 +150,7 @@ fn kinematic_step_methods(
 }
 
 /// Returns `t, `, the first argument of a call, if functions take time; otherwise an empty text.
-fn time_argument_prefix(s: &Signature<'_>) -> &'static str {
+fn time_argument_prefix(s: &SignatureContext<'_>) -> &'static str {
     if s.time { "t, " } else { "" }
 }
 
@@ -155,7 +165,7 @@ fn links_from_ground(links: &[LinkRecursionPrograms], mut link: Option<usize>) -
     path
 }
 
-fn write_link_placement(out: &mut String, k: usize, link: &LinkRecursionPrograms, s: &Signature<'_>) {
+fn write_link_placement(out: &mut String, k: usize, link: &LinkRecursionPrograms, s: &SignatureContext<'_>) {
     let t = time_argument_prefix(s);
     let parent = link.parent.map_or(String::new(), |p| format!(", &x{p}"));
     let _ = writeln!(out, "let x{k} = self.__link{k}_placement({t}q{parent});");
@@ -175,7 +185,7 @@ fn write_all_placements(
     out: &mut String,
     links: &[LinkRecursionPrograms],
     frames: &[FrameRecursionPrograms],
-    s: &Signature<'_>,
+    s: &SignatureContext<'_>,
 ) {
     for (k, link) in links.iter().enumerate() {
         write_link_placement(out, k, link, s);
@@ -197,7 +207,7 @@ fn write_frame_impl(
     frame: &FrameRecursionPrograms,
     links: &[LinkRecursionPrograms],
     speeds: bool,
-    s: &Signature<'_>,
+    s: &SignatureContext<'_>,
 ) {
     let scalar = s.scalar.scalar_name();
     // The steps take joint velocities.
@@ -239,7 +249,7 @@ fn write_frame_impl(
 }
 
 /// Writes the statement that binds the placement of the frame's link.
-fn write_frame_link_binding(out: &mut String, link: Option<usize>, s: &Signature<'_>) {
+fn write_frame_link_binding(out: &mut String, link: Option<usize>, s: &SignatureContext<'_>) {
     if let Some(k) = link {
         let _ = writeln!(out, "let x{k} = self.__link{k}_path_placement({}q);", time_argument_prefix(s));
     }
@@ -251,7 +261,7 @@ fn add_path_kinematics_methods(
     steps: &mut FrameStepMethods,
     k: usize,
     link: &LinkRecursionPrograms,
-    s: &Signature<'_>,
+    s: &SignatureContext<'_>,
 ) {
     use Argument::{A, Q, V};
     let (scalar, t) = (s.scalar.scalar_name(), time_argument_prefix(s));
@@ -290,7 +300,7 @@ fn write_jacobian(
     frame: &FrameRecursionPrograms,
     links: usize,
     speeds: bool,
-    s: &Signature<'_>,
+    s: &SignatureContext<'_>,
 ) {
     let (scalar, nv, t) = (s.scalar.scalar_name(), s.nv, time_argument_prefix(s));
     let matrix = format!("::linkwork::nalgebra::SMatrix<{scalar}, 6, {nv}>");
@@ -329,7 +339,7 @@ fn add_path_jacobian_methods(
     steps: &mut FrameStepMethods,
     k: usize,
     links: &[LinkRecursionPrograms],
-    s: &Signature<'_>,
+    s: &SignatureContext<'_>,
 ) {
     let (scalar, t, link, count) = (s.scalar.scalar_name(), time_argument_prefix(s), &links[k], links.len());
     let state = s.parameter_list(&s.with_time_argument(&[Argument::Q]));
@@ -365,7 +375,7 @@ fn write_jacobian_columns(
     k: usize,
     link: &LinkRecursionPrograms,
     written: &mut [bool],
-    s: &Signature<'_>,
+    s: &SignatureContext<'_>,
 ) {
     let state = if link.driven { format!("{}q, ", time_argument_prefix(s)) } else { String::new() };
     let call = format!("self.__link{k}_columns({state}&x[{k}], o)");
@@ -390,7 +400,7 @@ fn write_jacobian_columns(
 }
 
 /// Writes the functions of the trait `Frames`, which select an implementation of `NamedFrame` by index.
-pub fn write_trait(out: &mut String, frames: usize, s: &Signature<'_>) {
+pub fn write_trait(out: &mut String, frames: usize, s: &SignatureContext<'_>) {
     use Argument::{A, Q, T, V};
     let (scalar, nq, nv) = (s.scalar.scalar_name(), s.nq, s.nv);
     let _ = writeln!(out, "type Scalar = {scalar};\nconst FRAMES: &'static [&'static str] = &Self::FRAMES;");

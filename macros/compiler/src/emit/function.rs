@@ -2,12 +2,12 @@
 
 use super::body::write_body;
 use super::instruction::BuildKind;
-use super::signature::{Signature, matrix_argument_names};
+use super::signature::{SignatureContext, result_matrix_names};
 use crate::derive::Function;
 use std::fmt::Write;
 
 /// Writes a function's attributes and its signature up to the opening brace.
-pub fn write_function_head(out: &mut String, f: &Function, s: &Signature<'_>) {
+pub fn write_function_head(out: &mut String, f: &Function, s: &SignatureContext<'_>) {
     if f.docs.is_empty() {
         out.push_str("#[doc(hidden)]\n");
     }
@@ -16,7 +16,7 @@ pub fn write_function_head(out: &mut String, f: &Function, s: &Signature<'_>) {
     }
     let result = s.result_type(f);
     // The caller may need only the matrix arguments and ignore the result.
-    let must_use = if matrix_argument_names(f).is_empty() { "#[must_use]\n" } else { "" };
+    let must_use = if result_matrix_names(f).is_empty() { "#[must_use]\n" } else { "" };
     let _ = writeln!(
         out,
         "#[inline]\n{must_use}pub fn {}{}({}) -> {result} {{",
@@ -27,7 +27,7 @@ pub fn write_function_head(out: &mut String, f: &Function, s: &Signature<'_>) {
 }
 
 /// Writes a function. The body of a stub, for a mechanism that failed to compile, never returns.
-pub fn write_function(out: &mut String, f: &Function, s: &Signature<'_>, stub: bool) {
+pub fn write_function(out: &mut String, f: &Function, s: &SignatureContext<'_>, stub: bool) {
     write_function_head(out, f, s);
     if stub {
         out.push_str("loop {}\n");

@@ -1,7 +1,7 @@
 //! Implementations of a type: its inherent functions and the runtime's traits.
 
 use super::interface::{ALLOW, ImplGenerics, Interface, inherent_function_arguments};
-use super::signature::Signature;
+use super::signature::SignatureContext;
 use super::{constraints, contacts, differentiable, lanes, limits};
 use crate::catalogue::{self, Argument, ContactCounts};
 use std::fmt::Write;
@@ -14,7 +14,7 @@ pub fn write_impls(
     name: &str,
     methods: &str,
     i: &Interface<'_>,
-    s: &Signature<'_>,
+    s: &SignatureContext<'_>,
 ) {
     let ImplGenerics { generics, arguments, bounds } = head;
     let _ = writeln!(out, "{ALLOW}impl{generics} {name}{arguments} {bounds} {{\n{methods}}}");
@@ -83,7 +83,7 @@ fn write_trait_impl_head(
     out: &mut String,
     name: &str,
     of: &str,
-    s: &Signature<'_>,
+    s: &SignatureContext<'_>,
     more: [usize; 2],
 ) {
     let sizes = [s.nq, s.nv, s.nu, more[0], more[1]].map(|n| n.to_string()).join(", ");
@@ -97,7 +97,7 @@ fn write_contact_trait_impls(
     out: &mut String,
     name: &str,
     i: &Interface<'_>,
-    s: &Signature<'_>,
+    s: &SignatureContext<'_>,
 ) {
     let ContactCounts { count, rates } = i.facts.contacts;
     write_trait_impl_head(head, out, name, "Contacts", s, [count, rates]);
@@ -116,7 +116,7 @@ fn write_constraint_trait_impls(
     out: &mut String,
     name: &str,
     i: &Interface<'_>,
-    s: &Signature<'_>,
+    s: &SignatureContext<'_>,
 ) {
     let counts = [i.constraints.holonomic, i.constraints.names.len()];
     write_trait_impl_head(head, out, name, "Constrained", s, counts);
@@ -141,7 +141,7 @@ fn write_constraint_trait_impls(
 
 /// Writes the items of the trait `Mechanism`. Its functions call the inherent functions, which take only the
 /// arguments that they need.
-fn write_mechanism_trait_items(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
+fn write_mechanism_trait_items(out: &mut String, i: &Interface<'_>, s: &SignatureContext<'_>) {
     let _ = writeln!(out, "type Scalar = {};", s.scalar.scalar_name());
     for (name, n) in [("CONFIGURATION", s.nq), ("VELOCITIES", s.nv), ("INPUTS", s.nu)] {
         let _ = writeln!(out, "const {name}: [&'static str; {n}] = Self::{name};");
@@ -185,7 +185,7 @@ fn write_mechanism_trait_items(out: &mut String, i: &Interface<'_>, s: &Signatur
 }
 
 /// Writes the trait items that integrators use.
-fn write_integrator_hooks(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
+fn write_integrator_hooks(out: &mut String, i: &Interface<'_>, s: &SignatureContext<'_>) {
     if i.facts.speeds {
         out.push_str("const SPEEDS: bool = true;\n");
     }

@@ -90,11 +90,11 @@ impl BodyWriter<'_> {
             }
             Operand::Gather(k) => {
                 let gather = &self.program.gathers[k];
-                let is_input = |a: &Argument| {
+                let contains_gathered_symbol = |a: &Argument| {
                     gather.iter().any(|s| a.index_of_quantity(Quantity::from_symbol(*s)).is_some())
                 };
                 // Gathers of arguments are bound to names; gathers of parameters are not.
-                piece_without_dependencies(match self.arguments.iter().any(is_input) {
+                piece_without_dependencies(match self.arguments.iter().any(contains_gathered_symbol) {
                     true => format!("lanes{k}"),
                     false => self.gathered_vector(gather),
                 })

@@ -4,7 +4,7 @@ use super::constraints::Constraints;
 use super::contacts::UnilateralContact;
 use super::limits::CoordinateLimitIndices;
 use super::polytopes::ContactPolytopes;
-use super::signature::Signature;
+use super::signature::SignatureContext;
 use super::validate::ParameterCondition;
 use crate::catalogue::{Argument, Facts, Row};
 use crate::mechanism::{FreeBodyDiagram, Units};
@@ -86,7 +86,7 @@ pub struct ImplGenerics {
 
 impl ImplGenerics {
     /// Returns the generics of the struct, with the bound of a generic scalar added.
-    pub fn new(i: &Interface<'_>, s: &Signature<'_>) -> ImplGenerics {
+    pub fn new(i: &Interface<'_>, s: &SignatureContext<'_>) -> ImplGenerics {
         let (impl_generics, ty_generics, where_clause) = i.shell.generics.split_for_impl();
         let spell_tokens = |tokens: &dyn ToTokens| tokens.to_token_stream().to_string();
         let mut bounds = spell_tokens(&where_clause);

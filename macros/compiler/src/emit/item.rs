@@ -3,7 +3,7 @@
 use super::absent::write_missing_item_declarations;
 use super::constants::{write_constants, write_frame_index_function};
 use super::differentiable;
-use super::dispatch::DispatchedBodies;
+use super::dispatch::ArithmeticDispatchedBodies;
 use super::docs::{DocumentationPart, struct_docs};
 use super::frames::{write_frames, write_trait as write_frames_by_number};
 use super::function::write_function;
@@ -12,7 +12,7 @@ use super::interface::{ALLOW, ImplGenerics, Interface};
 use super::manifold::{write_manifold, write_velocity_transport_functions};
 use super::prepared::{PreparedProgram, write_prepared_struct_and_functions};
 use super::scalar::ScalarSpelling;
-use super::signature::Signature;
+use super::signature::SignatureContext;
 use super::{constraints, contacts};
 use super::{file, lanes, measurements, reactions, sensitivities, states, validate};
 use crate::derive::{AssociatedConstant, DerivationOutput, Function};
@@ -56,7 +56,7 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &DerivationOutput) -> G
     let mut methods = String::new();
     write_constants(&mut methods, interface, &output.equations, &output.constants);
     write_frame_index_function(&mut methods, false);
-    let mut bodies = DispatchedBodies::new(interface.detect);
+    let mut bodies = ArithmeticDispatchedBodies::new(interface.detect);
     for f in &output.functions {
         bodies.write_function(&mut methods, f, &s);
     }
@@ -171,7 +171,14 @@ pub fn emit_error_stubs(
     }
     differentiable::write_configuration_and_input_derivatives(&mut methods, None, functions, interface, &s);
     differentiable::write_forward_second_derivatives(&mut methods, None, interface, &s);
-    lanes::write_methods(&mut methods, &mut DispatchedBodies::new(false), interface, functions, None, &s);
+    lanes::write_methods(
+        &mut methods,
+        &mut ArithmeticDispatchedBodies::new(false),
+        interface,
+        functions,
+        None,
+        &s,
+    );
     validate::write_validate_method(&mut methods, interface, true);
     file::write_methods(&mut methods, interface, &spelling);
     let (q, v) = (s.vector_type(s.nq), s.vector_type(s.nv));
@@ -227,8 +234,11 @@ fn scalar_spelling(interface: &Interface<'_>) -> ScalarSpelling {
     )
 }
 
-fn common_function_signature<'a>(interface: &Interface<'_>, scalar: &'a ScalarSpelling) -> Signature<'a> {
-    Signature {
+fn common_function_signature<'a>(
+    interface: &Interface<'_>,
+    scalar: &'a ScalarSpelling,
+) -> SignatureContext<'a> {
+    SignatureContext {
         scalar,
         nq: interface.configuration.len(),
         nv: interface.velocities.len(),
@@ -239,7 +249,7 @@ fn common_function_signature<'a>(interface: &Interface<'_>, scalar: &'a ScalarSp
 
 /// Writes the functions for one frame, which `frame!(Robot, "tool")` selects by name; the compiler checks the
 /// name.
-fn write_frame_selection_functions(out: &mut String, s: &Signature<'_>) {
+fn write_frame_selection_functions(out: &mut String, s: &SignatureContext<'_>) {
     let scalar = s.scalar.scalar_name();
     let frame = format!("impl ::linkwork::FrameName<Self, {}, {}, Scalar = {scalar}>", s.nq, s.nv);
     let six = format!("::linkwork::nalgebra::SVector<{scalar}, 6>");
@@ -304,7 +314,7 @@ fn replace_runtime_path(text: String, shell: &GeneratedStruct) -> String {
 /// Returns the code of the struct with its implementations, without frames.
 fn assemble_generated_code(
     i: &Interface<'_>,
-    s: &Signature<'_>,
+    s: &SignatureContext<'_>,
     methods: &str,
     frames: usize,
     docs: &[DocumentationPart],

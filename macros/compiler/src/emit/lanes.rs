@@ -1,11 +1,11 @@
 //! Code of functions of several states at once, which the option `batch` requests. Their bodies equal those
 //! of single states, with SIMD lanes in place of scalars.
 
-use super::dispatch::DispatchedBodies;
+use super::dispatch::ArithmeticDispatchedBodies;
 use super::function::write_function;
 use super::interface::{Interface, inherent_function_arguments};
 use super::manifold::write_manifold;
-use super::signature::{Signature, matrix_argument_names};
+use super::signature::{SignatureContext, result_matrix_names};
 use crate::catalogue::{self, Argument, GeneratedId, Shape};
 use crate::derive::Function;
 use crate::mechanism::Chart;
@@ -15,17 +15,17 @@ use std::fmt::Write;
 /// the option `batch` is set. Without `charts`, for a mechanism that failed to compile, these are stubs.
 pub fn write_methods(
     out: &mut String,
-    bodies: &mut DispatchedBodies,
+    bodies: &mut ArithmeticDispatchedBodies,
     i: &Interface<'_>,
     functions: &[Function],
     charts: Option<&[Chart]>,
-    s: &Signature<'_>,
+    s: &SignatureContext<'_>,
 ) {
     if !i.facts.requests.batch {
         return;
     }
     let in_lanes = s.scalar.spelling_in_lanes();
-    let lanes = Signature { scalar: &in_lanes, ..*s };
+    let lanes = SignatureContext { scalar: &in_lanes, ..*s };
     let is_batched = |f: &&Function| match f.id {
         GeneratedId::ConstrainedDynamics => !i.constraints.overdetermined,
         // Hidden functions that other functions call.
@@ -70,7 +70,7 @@ pub fn sequential_debug_body(f: &Function) -> Option<String> {
     };
     let arguments: Option<Vec<String>> = f.arguments.iter().map(lane_argument).collect();
     let call = format!("self.{}({})", f.name, arguments?.join(", "));
-    let given = matrix_argument_names(f);
+    let given = result_matrix_names(f);
     if !given.is_empty() {
         let concatenate_for_arguments =
             |form: &dyn Fn(&str) -> String| given.iter().map(|name| form(name)).collect::<String>();
@@ -78,7 +78,7 @@ pub fn sequential_debug_body(f: &Function) -> Option<String> {
             concatenate_for_arguments(&|name| format!("let mut one_{name} = lane({name}, k);\n")),
             concatenate_for_arguments(&|name| format!("set_lane({name}, k, &one_{name});\n")),
         );
-        if matches!(f.shape, Shape::Forward(_) | Shape::CalledForward(_)) {
+        if matches!(f.shape, Shape::Forward(_) | Shape::ForwardDerivativesByCalls(_)) {
             return Some(format!(
                 "use ::linkwork::__private::{{Lanes, lane, lane_by_lane, set_lane}};\nlane_by_lane(|k| {{\n\
                  {first}let found = {call};\n{last}found\n}})\n"
@@ -102,7 +102,7 @@ pub fn sequential_debug_body(f: &Function) -> Option<String> {
             format!("lane_by_lane(|k| {call})")
         }
         Shape::Pair(_) | Shape::Linear(..) | Shape::CalledLinear(..) => format_tuple_of_parts(2),
-        Shape::Forward(_) | Shape::CalledForward(_) => format_tuple_of_parts(3),
+        Shape::Forward(_) | Shape::ForwardDerivativesByCalls(_) => format_tuple_of_parts(3),
         Shape::Hessian(_) => format_tuple_of_parts(4),
         Shape::Jacobians(..) => {
             let all = format_tuple_of_parts(0);
@@ -111,7 +111,7 @@ pub fn sequential_debug_body(f: &Function) -> Option<String> {
             let fields = ["by_q", "by_v", "by_a", "by_u"].map(format_lane_field).join(", ");
             format!("{all}::linkwork::OutputJacobians {{ {fields} }}")
         }
-        Shape::InputHessian(..) => format_tuple_of_parts(6),
+        Shape::InputPowerHessian(..) => format_tuple_of_parts(6),
         Shape::Accelerated(_) | Shape::Array(_) | Shape::Record(_) | Shape::Symmetric(_) => return None,
     };
     Some(format!("use ::linkwork::__private::{{Lanes, lane, lane_by_lane}};\n{result}\n"))
@@ -119,7 +119,7 @@ pub fn sequential_debug_body(f: &Function) -> Option<String> {
 
 /// Writes forward dynamics with constraints. If the elimination fails in a lane, all lanes use the function
 /// of a single state.
-fn write_constrained_dynamics_lanes(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
+fn write_constrained_dynamics_lanes(out: &mut String, i: &Interface<'_>, s: &SignatureContext<'_>) {
     let nv = s.nv;
     let arguments = s.with_time_argument(&[Argument::Q, Argument::V, Argument::Tau]);
     let names: Vec<&str> = arguments.iter().map(|a| a.argument_name()).collect();
@@ -175,9 +175,9 @@ fn write_constrained_dynamics_lanes(out: &mut String, i: &Interface<'_>, s: &Sig
 
 /// Writes the functions of the trait `Batch`, which call the inherent functions. They always take time as the
 /// first argument.
-pub fn write_batch_trait_functions(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
+pub fn write_batch_trait_functions(out: &mut String, i: &Interface<'_>, s: &SignatureContext<'_>) {
     let in_lanes = s.scalar.spelling_in_lanes();
-    let s = &Signature { scalar: &in_lanes, ..*s };
+    let s = &SignatureContext { scalar: &in_lanes, ..*s };
     for (row, arguments) in catalogue::mechanism_trait_rows() {
         let name = row.name;
         let all: Vec<Argument> = [&[Argument::T], arguments].concat();

@@ -1,6 +1,6 @@
 //! Code generation for the limits of coordinates.
 
-use super::signature::Signature;
+use super::signature::SignatureContext;
 use crate::catalogue::Shape;
 use crate::mechanism::{CoordinateLimits, Model};
 use std::fmt::Write;
@@ -51,7 +51,12 @@ const FUNCTIONS: [(&str, &str); 4] = [
 ];
 
 /// Writes the functions of the trait `Limits`. Omitted functions have defaults, which return no limits.
-pub fn write_trait(out: &mut String, limited: &[CoordinateLimitIndices], speeds: bool, s: &Signature<'_>) {
+pub fn write_trait(
+    out: &mut String,
+    limited: &[CoordinateLimitIndices],
+    speeds: bool,
+    s: &SignatureContext<'_>,
+) {
     let (scalar, q, v) = (s.scalar.scalar_name(), s.vector_type(s.nq), s.vector_type(s.nv));
     let _ = writeln!(out, "type Scalar = {scalar};");
     for (which, (name, infinity)) in FUNCTIONS.into_iter().enumerate() {

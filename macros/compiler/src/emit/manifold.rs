@@ -1,6 +1,6 @@
 //! Code generation for functions on the configuration manifold.
 
-use super::signature::Signature;
+use super::signature::SignatureContext;
 use crate::mechanism::Chart;
 use std::fmt::Write;
 
@@ -8,7 +8,7 @@ use std::fmt::Write;
 /// Without `charts`, for a mechanism that failed to compile, their bodies never return.
 ///
 /// With generalized speeds these functions are hidden, and the public functions call them.
-pub fn write_manifold(out: &mut String, charts: Option<&[Chart]>, speeds: bool, s: &Signature<'_>) {
+pub fn write_manifold(out: &mut String, charts: Option<&[Chart]>, speeds: bool, s: &SignatureContext<'_>) {
     let (q, v) = (s.vector_type(s.nq), s.vector_type(s.nv));
     let new_manifold_function = |kind,
                                  about,
@@ -58,7 +58,7 @@ pub fn write_velocity_transport_functions(
     out: &mut String,
     charts: Option<&[Chart]>,
     speeds: bool,
-    s: &Signature<'_>,
+    s: &SignatureContext<'_>,
 ) {
     let v = s.vector_type(s.nv);
     let mut write_transport_function = |kind, about| {
@@ -86,7 +86,7 @@ pub fn write_velocity_transport_functions(
 }
 
 /// Writes the hidden function that selects the linear velocities of free joints.
-fn write_linear_velocity_selection(out: &mut String, charts: Option<&[Chart]>, s: &Signature<'_>) {
+fn write_linear_velocity_selection(out: &mut String, charts: Option<&[Chart]>, s: &SignatureContext<'_>) {
     let v = s.vector_type(s.nv);
     let _ = writeln!(
         out,
@@ -161,7 +161,7 @@ impl ManifoldFunction {
         out: &mut String,
         prefix: &str,
         charts: Option<&[Chart]>,
-        s: &Signature<'_>,
+        s: &SignatureContext<'_>,
     ) {
         let hidden = if prefix.is_empty() { "" } else { "#[doc(hidden)]\n" };
         let _ = writeln!(

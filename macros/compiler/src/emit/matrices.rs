@@ -1,7 +1,7 @@
 //! Results that consist of several matrices, and products and inverses that are completed at run time.
 
 use super::pieces::OutputTexts;
-use super::signature::{Signature, matrix_argument_names};
+use super::signature::{SignatureContext, result_matrix_names};
 use crate::catalogue::{InverseForm, MatrixStructure, Shape};
 use crate::derive::Function;
 use crate::machine::FILLED_ZEROS;
@@ -15,8 +15,8 @@ const NOTHING: &str = "&mut []";
 
 /// Returns the end of a function with matrix arguments: the code after the outputs are stored in the
 /// matrices.
-pub fn matrix_function_epilogue(f: &Function, s: &Signature<'_>, outputs: &OutputTexts<'_>) -> String {
-    let given: Vec<String> = matrix_argument_names(f).iter().map(|name| format!("*{name}")).collect();
+pub fn matrix_function_epilogue(f: &Function, s: &SignatureContext<'_>, outputs: &OutputTexts<'_>) -> String {
+    let given: Vec<String> = result_matrix_names(f).iter().map(|name| format!("*{name}")).collect();
     match (f.shape, given.as_slice()) {
         (Shape::Forward(n), [by_q, by_v, inverse]) => format!(
             "{}{}{}\n",
@@ -24,8 +24,8 @@ pub fn matrix_function_epilogue(f: &Function, s: &Signature<'_>, outputs: &Outpu
             acceleration_conversion_statement([by_q, by_v], inverse, n, s, &f.structure),
             outputs.output_matrix_constructor_text(f.shape.output_count(&f.structure) - n, n, 1)
         ),
-        (Shape::CalledForward(n), [by_q, by_v, inverse]) => {
-            let (t, lanes) = (if s.time { "t, " } else { "" }, s.call_suffix());
+        (Shape::ForwardDerivativesByCalls(n), [by_q, by_v, inverse]) => {
+            let (t, lanes) = (if s.time { "t, " } else { "" }, s.lane_function_suffix());
             format!(
                 "let a = self.__accelerations_and_inverse{lanes}({t}q, v, tau, &mut {inverse});
                 self.inverse_dynamics_derivatives_into{lanes}({t}q, v, &a, &mut {by_q}, &mut \
@@ -53,7 +53,7 @@ pub fn matrix_function_epilogue(f: &Function, s: &Signature<'_>, outputs: &Outpu
 }
 
 /// Returns the expression of the result, composed of the outputs.
-pub fn result_expression_text(f: &Function, s: &Signature<'_>, outputs: &OutputTexts<'_>) -> String {
+pub fn result_expression_text(f: &Function, s: &SignatureContext<'_>, outputs: &OutputTexts<'_>) -> String {
     let format_square_matrix = |k: usize, n: usize| outputs.output_matrix_constructor_text(k * n * n, n, n);
     match f.shape {
         Shape::Pair(n) => format!("({}, {})\n", format_square_matrix(0, n), format_square_matrix(1, n)),
@@ -76,7 +76,7 @@ pub fn result_expression_text(f: &Function, s: &Signature<'_>, outputs: &OutputT
                 format_square_matrix(3, n)
             )
         }
-        Shape::InputHessian(n, m) => {
+        Shape::InputPowerHessian(n, m) => {
             let format_mixed_matrix =
                 |k: usize| outputs.output_matrix_constructor_text(3 * n * n + k * n * m, n, m);
             let state = [0, 1, 2].map(|k| format_square_matrix(k, n)).join(", ");
@@ -137,7 +137,7 @@ fn inverse_binding_statements(
     f: &Function,
     n: usize,
     first: usize,
-    s: &Signature<'_>,
+    s: &SignatureContext<'_>,
     outputs: &OutputTexts<'_>,
 ) -> String {
     let rest = inverse_completion_statement(["inverse", NOTHING], f, n, first, s, outputs);
@@ -152,7 +152,7 @@ fn inverse_completion_statement(
     f: &Function,
     n: usize,
     first: usize,
-    s: &Signature<'_>,
+    s: &SignatureContext<'_>,
     outputs: &OutputTexts<'_>,
 ) -> String {
     let trailing_rows_of_width =
@@ -197,7 +197,7 @@ impl OutputsAfterMatrix<'_> {
 
     /// Returns the statement that adds the product of the trunk's columns and these factors to the matrix
     /// `place`; empty if all factors are zero.
-    fn trunk_completion_statement(&self, place: &str, trunk: &[usize], s: &Signature<'_>) -> String {
+    fn trunk_completion_statement(&self, place: &str, trunk: &[usize], s: &SignatureContext<'_>) -> String {
         let used: Vec<(usize, IndexRange)> =
             (0..self.rows).filter_map(|k| Some((k, self.nonzero_range(k)?))).collect();
         let runs = group_factor_columns(used.iter().enumerate().map(|(place, (k, used))| (*k, *used, place)));
@@ -221,7 +221,7 @@ impl OutputsAfterMatrix<'_> {
         [place, solved]: [&str; 2],
         trunk: &[usize],
         limbs: &[Vec<usize>],
-        s: &Signature<'_>,
+        s: &SignatureContext<'_>,
     ) -> String {
         let length = self.width.next_multiple_of(4);
         let padding = vec![constant_conversion_call("0.0", s); length - self.width];
@@ -280,7 +280,7 @@ fn group_factor_columns(
 
 /// Returns the statements that store the columns that are already computed in the matrix arguments.
 fn known_column_store_statements(f: &Function, outputs: &OutputTexts<'_>, n: usize) -> String {
-    let columns = matrix_argument_names(f).into_iter().zip(&f.structure.known);
+    let columns = result_matrix_names(f).into_iter().zip(&f.structure.known);
     let columns = columns.flat_map(|(matrix, known)| known.iter().map(move |column| (matrix, column)));
     let texts = columns.enumerate().map(|(k, (matrix, column))| {
         format!("{matrix}.data.0[{column}] = {};\n", outputs.array_of_outputs(k * n..(k + 1) * n))
@@ -293,7 +293,7 @@ fn acceleration_conversion_statement(
     forces: [&str; 2],
     inverse: &str,
     n: usize,
-    s: &Signature<'_>,
+    s: &SignatureContext<'_>,
     structure: &MatrixStructure,
 ) -> String {
     let is_known_factor_entry = |k: usize| structure.known[k / (n * n)].contains(&(k / n % n));
@@ -312,7 +312,7 @@ fn inverse_product_statement(
     n: usize,
     columns: usize,
     factors: &[String],
-    s: &Signature<'_>,
+    s: &SignatureContext<'_>,
 ) -> String {
     if n == 0 {
         return String::new();
@@ -394,7 +394,7 @@ fn column_groups_source(n: usize, columns: usize, first: usize, is_zero: &dyn Fn
 
 /// Returns the body of a function that calls its variant with `count` matrix arguments, so that no large
 /// value is moved.
-pub fn body_calling_matrix_argument_variant(f: &Function, count: usize, s: &Signature<'_>) -> String {
+pub fn body_calling_matrix_argument_variant(f: &Function, count: usize, s: &SignatureContext<'_>) -> String {
     let arguments: Vec<&str> = f.arguments.iter().map(|a| a.argument_name()).collect();
     let zeros = vec![format!("<{}>::zeros()", s.shape_type(Shape::Square(s.nv))); count];
     let given: Vec<String> = (0..count).map(|k| format!("&mut all.{k}")).collect();
@@ -404,16 +404,16 @@ pub fn body_calling_matrix_argument_variant(f: &Function, count: usize, s: &Sign
         all\n",
         zeros.join(", "),
         f.name,
-        s.call_suffix(),
+        s.lane_function_suffix(),
         arguments.join(", "),
         given.join(", ")
     )
 }
 
 /// Returns the statement that calls the derivatives of forward dynamics under the forces `tau`.
-fn acceleration_derivative_call(mutable: bool, s: &Signature<'_>) -> String {
+fn acceleration_derivative_call(mutable: bool, s: &SignatureContext<'_>) -> String {
     let t = if s.time { "t, " } else { "" };
-    let lanes = s.call_suffix();
+    let lanes = s.lane_function_suffix();
     let mutable = if mutable { "mut " } else { "" };
     format!(
         "let ({mutable}by_q, {mutable}by_v, inverse) = self.forward_dynamics_derivatives{lanes}({t}q, v, \
@@ -421,7 +421,7 @@ fn acceleration_derivative_call(mutable: bool, s: &Signature<'_>) -> String {
     )
 }
 
-fn constant_conversion_call(x: &str, s: &Signature<'_>) -> String {
+fn constant_conversion_call(x: &str, s: &SignatureContext<'_>) -> String {
     format!("::linkwork::__private::constant::<{}>({x})", s.scalar.scalar_name())
 }
 
@@ -431,7 +431,7 @@ fn linear_system_expression(
     n: usize,
     m: usize,
     first: usize,
-    s: &Signature<'_>,
+    s: &SignatureContext<'_>,
     outputs: &OutputTexts<'_>,
 ) -> String {
     let factor = format!("(&mut by_u, {})", column_groups_source(n, m, first, &|k| outputs.is_zero(k)));

@@ -1,7 +1,7 @@
 //! Implementations of the runtime's traits of outputs, which return all outputs of a mechanism in one vector.
 
 use super::interface::{ALLOW, ImplGenerics, Interface};
-use super::signature::Signature;
+use super::signature::SignatureContext;
 use super::states;
 use crate::catalogue::{Argument, BY_PARAMETERS, DERIVATIVES, GeneratedId, Shape};
 use crate::derive::Function;
@@ -21,7 +21,7 @@ struct Measurements<'a> {
     /// Public interface of the mechanism.
     i: &'a Interface<'a>,
     /// Signature helper for the generated functions.
-    s: &'a Signature<'a>,
+    s: &'a SignatureContext<'a>,
     /// Parameter list of the trait functions, as source text.
     parameters: String,
 }
@@ -33,7 +33,7 @@ pub fn write_impls(
     name: &str,
     functions: &[Function],
     i: &Interface<'_>,
-    s: &Signature<'_>,
+    s: &SignatureContext<'_>,
 ) {
     // Rates of states and matrices are not part of the vector of outputs.
     let is_rate_of_state =

@@ -1,6 +1,6 @@
 //! Code of the features of polytopes in contact.
 
-use super::signature::Signature;
+use super::signature::SignatureContext;
 use crate::catalogue::CalledFunction;
 use crate::mechanism::{Model, Polytope};
 use std::fmt::Write;
@@ -29,7 +29,7 @@ impl ContactPolytopes {
     }
 
     /// Writes the function that returns the features of all pairs, and its variant for several states.
-    pub fn write_methods(&self, out: &mut String, is_batched: bool, s: &Signature<'_>) {
+    pub fn write_methods(&self, out: &mut String, is_batched: bool, s: &SignatureContext<'_>) {
         if self.pairs.is_empty() {
             return;
         }
@@ -52,7 +52,7 @@ impl ContactPolytopes {
             return;
         }
         let in_lanes = s.scalar.spelling_in_lanes();
-        let lanes = Signature { scalar: &in_lanes, ..*s };
+        let lanes = SignatureContext { scalar: &in_lanes, ..*s };
         let one = arguments.iter().map(|a| match a.argument_name() {
             "t" => "t.0[k]".to_string(),
             name => format!("&lane({name}, k)"),

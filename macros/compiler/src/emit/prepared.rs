@@ -3,13 +3,13 @@
 
 use super::absent::write_items_absent_after_prepare;
 use super::constants::write_sizes_and_names;
-use super::dispatch::DispatchedBodies;
+use super::dispatch::ArithmeticDispatchedBodies;
 use super::docs::operation_count_table;
 use super::function::write_function;
 use super::implementations::write_impls;
 use super::interface::{ALLOW, ImplGenerics, Interface};
 use super::manifold::{write_manifold, write_velocity_transport_functions};
-use super::signature::Signature;
+use super::signature::SignatureContext;
 use super::{constraints, contacts, differentiable, lanes, measurements, reactions};
 use crate::derive::Function;
 use crate::lower::Program;
@@ -31,7 +31,7 @@ pub struct PreparedProgram<'a> {
 pub fn write_prepared_struct_and_functions(
     out: &mut String,
     i: &Interface<'_>,
-    s: &Signature<'_>,
+    s: &SignatureContext<'_>,
     functions: &[Function],
     content: &PreparedProgram<'_>,
 ) {
@@ -41,7 +41,7 @@ pub fn write_prepared_struct_and_functions(
     write_prepared_struct(out, i, s, &name, count, functions);
     let mut methods = String::new();
     write_sizes_and_names(&mut methods, i);
-    let mut bodies = DispatchedBodies::new(i.detect);
+    let mut bodies = ArithmeticDispatchedBodies::new(i.detect);
     for f in functions {
         match content.numbers {
             Some(_) => bodies.write_function(&mut methods, f, s),
@@ -94,7 +94,7 @@ pub fn write_prepared_struct_and_functions(
 fn write_prepared_struct(
     out: &mut String,
     i: &Interface<'_>,
-    s: &Signature<'_>,
+    s: &SignatureContext<'_>,
     name: &str,
     count: usize,
     functions: &[Function],

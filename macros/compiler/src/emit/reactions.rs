@@ -3,7 +3,7 @@
 
 use super::docs::output_function_documentation;
 use super::interface::Interface;
-use super::signature::Signature;
+use super::signature::SignatureContext;
 use crate::catalogue::{Argument, REACTION, TOUCHED};
 use crate::derive::Function;
 use crate::mechanism::{ActionOrigin, FreeBodyDiagram};
@@ -11,7 +11,7 @@ use std::fmt::Write;
 
 /// Writes the functions of outputs that contain joint reactions, and of free-body diagrams, for the hidden
 /// functions among `functions`.
-pub fn write_methods(out: &mut String, i: &Interface<'_>, functions: &[Function], s: &Signature<'_>) {
+pub fn write_methods(out: &mut String, i: &Interface<'_>, functions: &[Function], s: &SignatureContext<'_>) {
     let c = &i.constraints;
     let t = if s.time { "t, " } else { "" };
     for f in functions {
@@ -71,7 +71,7 @@ fn write_contact_free_body_diagram(
     i: &Interface<'_>,
     (name, diagram): (&str, &FreeBodyDiagram),
     (arguments, tau, solve, call): (&[Argument], &str, &str, &str),
-    s: &Signature<'_>,
+    s: &SignatureContext<'_>,
 ) {
     let (scalar, kind) = (s.scalar.scalar_name(), free_body_diagram_type(diagram, s));
     let parameters = s.parameter_list(&s.with_time_argument(arguments));
@@ -119,7 +119,7 @@ pub fn write_contact_output_stubs(
     out: &mut String,
     i: &Interface<'_>,
     functions: &[Function],
-    s: &Signature<'_>,
+    s: &SignatureContext<'_>,
 ) {
     let mut arguments = vec![Argument::Q, Argument::V];
     arguments.extend((s.nu > 0).then_some(Argument::U));
@@ -150,16 +150,16 @@ pub fn write_contact_output_stubs(
 }
 
 /// Returns the Rust type of a free-body diagram.
-fn free_body_diagram_type(diagram: &FreeBodyDiagram, s: &Signature<'_>) -> String {
+fn free_body_diagram_type(diagram: &FreeBodyDiagram, s: &SignatureContext<'_>) -> String {
     format!("::linkwork::free_body::Diagram<{}, {}>", s.scalar.scalar_name(), diagram.actions.len())
 }
 
 /// Returns the expression that constructs a free-body diagram from the expression `numbers` of its values.
 fn diagram_expression(diagram: &FreeBodyDiagram, numbers: &str) -> String {
-    let origin = |(name, origin): &(String, ActionOrigin)| {
+    let format_action_origin = |(name, origin): &(String, ActionOrigin)| {
         format!("({name:?}, ::linkwork::free_body::Origin::{origin:?})")
     };
-    let actions: Vec<String> = diagram.actions.iter().map(origin).collect();
+    let actions: Vec<String> = diagram.actions.iter().map(format_action_origin).collect();
     format!(
         "::linkwork::free_body::Diagram::new({:?}, [{}], ({numbers}).as_slice())",
         diagram.body,
@@ -168,7 +168,7 @@ fn diagram_expression(diagram: &FreeBodyDiagram, numbers: &str) -> String {
 }
 
 /// Returns the description of the function of a free-body diagram.
-fn diagram_docs(diagram: &FreeBodyDiagram, s: &Signature<'_>) -> String {
+fn diagram_docs(diagram: &FreeBodyDiagram, s: &SignatureContext<'_>) -> String {
     let motion = match s.nu {
         0 => "in the motion that the state determines",
         _ => "in the motion under the inputs",
@@ -186,7 +186,7 @@ fn diagram_docs(diagram: &FreeBodyDiagram, s: &Signature<'_>) -> String {
 }
 
 /// Returns the description of the function of an output that contains reactions.
-fn reaction_docs(i: &Interface<'_>, s: &Signature<'_>) -> String {
+fn reaction_docs(i: &Interface<'_>, s: &SignatureContext<'_>) -> String {
     let motion = match s.nu {
         0 => "in the motion that the state determines",
         _ => "in the motion under the inputs",
@@ -207,7 +207,7 @@ pub fn write_contact_force_outputs(
     out: &mut String,
     i: &Interface<'_>,
     functions: &[Function],
-    s: &Signature<'_>,
+    s: &SignatureContext<'_>,
 ) {
     let pass = if s.time { "t, " } else { "" };
     let scalar = s.scalar.scalar_name();

@@ -1,12 +1,12 @@
 //! Implementation of the runtime's trait of derivatives with respect to parameters.
 
 use super::interface::{ALLOW, ImplGenerics, Interface};
-use super::signature::Signature;
+use super::signature::SignatureContext;
 use crate::catalogue::{Argument, ContactCounts, Shape};
 use std::fmt::Write;
 
 /// Writes the trait implementation for the type `name`, if the mechanism has these derivatives.
-pub fn write_sensitivities_impl(out: &mut String, name: &str, i: &Interface<'_>, s: &Signature<'_>) {
+pub fn write_sensitivities_impl(out: &mut String, name: &str, i: &Interface<'_>, s: &SignatureContext<'_>) {
     use Argument::{A, Q, Tau, U, V};
     let facts = &i.facts;
     if !facts.requests.sensitivities || facts.constraints.is_some() || facts.parameters == 0 {

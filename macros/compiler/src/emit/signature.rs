@@ -8,7 +8,7 @@ use crate::machine::FILLING_INSTRUCTIONS;
 use std::fmt::Write;
 
 /// Returns the names of the matrix arguments to which a function writes its results.
-pub fn matrix_argument_names(f: &Function) -> Vec<&'static str> {
+pub fn result_matrix_names(f: &Function) -> Vec<&'static str> {
     let matrix_argument_name =
         |a: &Argument| if let Argument::Into(name, _) = a { Some(*name) } else { None };
     f.arguments.iter().filter_map(matrix_argument_name).collect()
@@ -19,8 +19,8 @@ pub fn matrix_argument_names(f: &Function) -> Vec<&'static str> {
 pub fn variant_matrix_argument_count(f: &Function) -> Option<usize> {
     let has_variant = f.id == GeneratedId::InverseDynamicsDerivatives;
     match f.shape {
-        _ if !matrix_argument_names(f).is_empty() => None,
-        Shape::CalledForward(_) => Some(3),
+        _ if !result_matrix_names(f).is_empty() => None,
+        Shape::ForwardDerivativesByCalls(_) => Some(3),
         Shape::Pair(_) if has_variant && f.loops.is_some() => Some(2),
         Shape::Pair(_) if has_variant && f.program.instructions.len() >= FILLING_INSTRUCTIONS => Some(2),
         _ => None,
@@ -29,7 +29,7 @@ pub fn variant_matrix_argument_count(f: &Function) -> Option<usize> {
 
 /// Dimensions and names that occur in the signatures of a mechanism.
 #[derive(Clone, Copy)]
-pub struct Signature<'a> {
+pub struct SignatureContext<'a> {
     /// Spelling of scalar types and operations.
     pub scalar: &'a ScalarSpelling,
     /// Number of coordinates, `NQ`.
@@ -42,15 +42,15 @@ pub struct Signature<'a> {
     pub time: bool,
 }
 
-impl Signature<'_> {
+impl SignatureContext<'_> {
     /// Returns the Rust type of a function's result.
     pub fn result_type(&self, f: &Function) -> String {
         match f.shape {
             Shape::Accelerated(n) => self.vector_type(n),
-            Shape::Forward(n) | Shape::CalledForward(n) if !matrix_argument_names(f).is_empty() => {
+            Shape::Forward(n) | Shape::ForwardDerivativesByCalls(n) if !result_matrix_names(f).is_empty() => {
                 self.vector_type(n)
             }
-            shape if matrix_argument_names(f).is_empty() => self.shape_type(shape),
+            shape if result_matrix_names(f).is_empty() => self.shape_type(shape),
             _ => "()".to_string(),
         }
     }
@@ -93,11 +93,11 @@ impl Signature<'_> {
             Shape::Pair(_)
             | Shape::Hessian(_)
             | Shape::Jacobians(..)
-            | Shape::InputHessian(..)
+            | Shape::InputPowerHessian(..)
             | Shape::Forward(_)
             | Shape::Linear(..)
             | Shape::Accelerated(_)
-            | Shape::CalledForward(_)
+            | Shape::ForwardDerivativesByCalls(_)
             | Shape::CalledLinear(..)
             | Shape::Symmetric(_) => result_type_of_several_matrices(shape, self),
         }
@@ -115,7 +115,7 @@ impl Signature<'_> {
     }
 
     /// Returns the suffix of a function's name in calls.
-    pub fn call_suffix(&self) -> &'static str {
+    pub fn lane_function_suffix(&self) -> &'static str {
         if self.scalar.uses_batch_lanes() { "_lanes" } else { "" }
     }
 
@@ -130,7 +130,7 @@ impl Signature<'_> {
 }
 
 /// Returns the type of a result of several matrices.
-fn result_type_of_several_matrices(shape: Shape, s: &Signature<'_>) -> String {
+fn result_type_of_several_matrices(shape: Shape, s: &SignatureContext<'_>) -> String {
     let square_matrix_type = |n| s.shape_type(Shape::Square(n));
     match shape {
         Shape::Pair(n) => format!("({0}, {0})", square_matrix_type(n)),
@@ -138,11 +138,13 @@ fn result_type_of_several_matrices(shape: Shape, s: &Signature<'_>) -> String {
             format!("::linkwork::OutputJacobians<{}, {rows}, {n}, {m}>", s.scalar.scalar_name())
         }
         Shape::Hessian(n) => format!("({0}, {0}, {0}, {0})", square_matrix_type(n)),
-        Shape::InputHessian(n, m) => {
+        Shape::InputPowerHessian(n, m) => {
             let mixed = s.shape_type(Shape::Matrix(n, m));
             format!("({0}, {0}, {0}, {mixed}, {mixed}, {1})", square_matrix_type(n), square_matrix_type(m))
         }
-        Shape::Forward(n) | Shape::CalledForward(n) => format!("({0}, {0}, {0})", square_matrix_type(n)),
+        Shape::Forward(n) | Shape::ForwardDerivativesByCalls(n) => {
+            format!("({0}, {0}, {0})", square_matrix_type(n))
+        }
         Shape::Accelerated(n) => s.vector_type(n),
         Shape::Linear(n, m) | Shape::CalledLinear(n, m) => {
             format!("({}, {})", square_matrix_type(2 * n), s.shape_type(Shape::Matrix(2 * n, m)))

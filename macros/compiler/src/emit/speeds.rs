@@ -1,13 +1,13 @@
 //! Configuration space of a mechanism with generalized speeds. Its functions call hidden functions for joint
 //! velocities and convert between the two.
 
-use super::signature::Signature;
+use super::signature::SignatureContext;
 use crate::catalogue::Shape;
 use std::fmt::Write;
 
 /// Writes `integrate`, `difference` and `displacement_rate`, or stubs for a mechanism that failed to compile.
-pub fn write_manifold(out: &mut String, stub: bool, s: &Signature<'_>) {
-    let (q, v, lanes) = (s.vector_type(s.nq), s.vector_type(s.nv), s.call_suffix());
+pub fn write_manifold(out: &mut String, stub: bool, s: &SignatureContext<'_>) {
+    let (q, v, lanes) = (s.vector_type(s.nq), s.vector_type(s.nv), s.lane_function_suffix());
     let functions = [
         (
             "integrate",
@@ -48,7 +48,7 @@ pub fn write_manifold(out: &mut String, stub: bool, s: &Signature<'_>) {
 
 /// Writes the functions of the trait `Mechanism` for which only mechanisms with generalized speeds override
 /// the default.
-pub fn write_mechanism_trait_overrides(out: &mut String, s: &Signature<'_>) {
+pub fn write_mechanism_trait_overrides(out: &mut String, s: &SignatureContext<'_>) {
     let (q, v) = (s.vector_type(s.nq), s.vector_type(s.nv));
     let _ = writeln!(
         out,
@@ -61,7 +61,7 @@ pub fn write_mechanism_trait_overrides(out: &mut String, s: &Signature<'_>) {
 }
 
 /// Writes the functions on the configuration space for the trait `Batch`.
-pub fn write_batch_configuration_functions(out: &mut String, s: &Signature<'_>) {
+pub fn write_batch_configuration_functions(out: &mut String, s: &SignatureContext<'_>) {
     let (q, v) = (s.vector_type(s.nq), s.vector_type(s.nv));
     let _ = writeln!(
         out,
@@ -79,12 +79,12 @@ fn turbofish_form_of_type(v: &str) -> String {
 }
 
 /// Returns the Rust expression of a NaN.
-fn nan_expression(s: &Signature<'_>) -> String {
+fn nan_expression(s: &SignatureContext<'_>) -> String {
     format!("::linkwork::__private::constant::<{}>(f64::NAN)", s.scalar.scalar_name())
 }
 
 /// Writes the functions of the trait `Derivatives` on the configuration space.
-pub fn write_configuration_space_derivatives(out: &mut String, s: &Signature<'_>) {
+pub fn write_configuration_space_derivatives(out: &mut String, s: &SignatureContext<'_>) {
     let (q, v, square) = (s.vector_type(s.nq), s.vector_type(s.nv), s.shape_type(Shape::Square(s.nv)));
     let unknown = format!("{}::repeat({})", square.replacen("SMatrix<", "SMatrix::<", 1), nan_expression(s));
     let _ = writeln!(
@@ -128,7 +128,7 @@ pub fn write_configuration_space_derivatives(out: &mut String, s: &Signature<'_>
 }
 
 /// Writes the function of the trait `SecondDerivatives` on the configuration space.
-pub fn write_manifold_second_derivatives(out: &mut String, s: &Signature<'_>) {
+pub fn write_manifold_second_derivatives(out: &mut String, s: &SignatureContext<'_>) {
     let (v, square) = (s.vector_type(s.nv), s.shape_type(Shape::Square(s.nv)));
     let unknown = format!("{}::repeat({})", square.replacen("SMatrix<", "SMatrix::<", 1), nan_expression(s));
     let _ = writeln!(

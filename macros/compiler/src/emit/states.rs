@@ -1,7 +1,7 @@
 //! Implementations of the runtime's traits for mechanisms with states of first order.
 
 use super::interface::{ALLOW, ImplGenerics, Interface};
-use super::signature::Signature;
+use super::signature::SignatureContext;
 use crate::catalogue::{Argument, BY_PARAMETERS, DERIVATIVES, Shape};
 use crate::derive::Function;
 use crate::syntax::RATE_OF_STATE;
@@ -14,7 +14,7 @@ pub fn rate_function_name(state: &str) -> String {
 
 /// Writes the implementations of the traits of first-order states, if the mechanism has such states and
 /// dynamics.
-pub fn write_impls(out: &mut String, functions: &[Function], i: &Interface<'_>, s: &Signature<'_>) {
+pub fn write_impls(out: &mut String, functions: &[Function], i: &Interface<'_>, s: &SignatureContext<'_>) {
     let rates: Option<Vec<&Function>> = i
         .states
         .iter()
@@ -55,7 +55,12 @@ fn rate_call(f: &Function, suffix: &str) -> String {
 const TAKEN: [Argument; 4] = [Argument::T, Argument::Q, Argument::V, Argument::U];
 
 /// Writes names, units, values and rates of the states of first order.
-fn write_first_order_states(out: &mut String, rates: &[&Function], i: &Interface<'_>, s: &Signature<'_>) {
+fn write_first_order_states(
+    out: &mut String,
+    rates: &[&Function],
+    i: &Interface<'_>,
+    s: &SignatureContext<'_>,
+) {
     let n = rates.len();
     let (vector, parameters) = (s.vector_type(n), s.parameter_list(&TAKEN));
     let names: Vec<String> = i.states.iter().map(|(name, _)| format!("{name:?}")).collect();
@@ -91,7 +96,7 @@ fn write_first_order_states(out: &mut String, rates: &[&Function], i: &Interface
 }
 
 /// Writes the derivatives of the rates of velocities and states, for implicit integration methods.
-fn write_extended_motion_derivatives(out: &mut String, n: usize, s: &Signature<'_>) {
+fn write_extended_motion_derivatives(out: &mut String, n: usize, s: &SignatureContext<'_>) {
     let all = s.nv + n;
     let _ = writeln!(
         out,
@@ -110,7 +115,12 @@ fn write_extended_motion_derivatives(out: &mut String, n: usize, s: &Signature<'
 }
 
 /// Writes the derivatives of the rates of the states, and the derivatives of the dynamics by the states.
-fn write_state_derivatives(out: &mut String, rates: &[&Function], i: &Interface<'_>, s: &Signature<'_>) {
+fn write_state_derivatives(
+    out: &mut String,
+    rates: &[&Function],
+    i: &Interface<'_>,
+    s: &SignatureContext<'_>,
+) {
     let (n, scalar) = (rates.len(), s.scalar.scalar_name());
     let which: Vec<String> = i.states.iter().map(|(_, k)| k.to_string()).collect();
     let which = which.join(", ");

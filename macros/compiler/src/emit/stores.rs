@@ -1,7 +1,7 @@
 //! Stores of results in matrix arguments, each immediately after the result is computed.
 
 use super::pieces::{ExpressionPiece, OutputTexts, Statement};
-use super::signature::matrix_argument_names;
+use super::signature::result_matrix_names;
 use crate::catalogue::{InverseForm, Shape};
 use crate::derive::Function;
 use crate::lower::{Op, Operand, Program};
@@ -33,7 +33,7 @@ pub fn insert_result_stores(
     statements: Vec<Statement>,
     outputs: &OutputTexts<'_>,
 ) -> (Vec<Statement>, Vec<ExpressionPiece>) {
-    let places = entries_storing_outputs(f, outputs);
+    let places = matrix_entries_by_output(f, outputs);
     let all = match !program.gathers.is_empty() && statements.len() <= TRANSPOSED_STATEMENTS {
         true => append_all_stores(statements, &places, outputs),
         false => insert_stores_after_dependencies(program, statements, &places, outputs),
@@ -47,8 +47,8 @@ pub fn insert_result_stores(
 /// Returns the entries in which each output is stored. Constant zeros of derivatives are not stored; those of
 /// an inverse are, because terms are added to it later. Trunk columns of a block arrow inverse are not
 /// stored, because they are computed later.
-fn entries_storing_outputs(f: &Function, outputs: &OutputTexts<'_>) -> Vec<Vec<MatrixEntry>> {
-    let given = matrix_argument_names(f);
+fn matrix_entries_by_output(f: &Function, outputs: &OutputTexts<'_>) -> Vec<Vec<MatrixEntry>> {
+    let given = result_matrix_names(f);
     let [matrix, ..] = *given.as_slice() else { return Vec::new() };
     let (before, has_forces, n) = match f.shape {
         Shape::Symmetric(_) => {

@@ -1,6 +1,6 @@
 //! Printed form of Hamilton's equations: the Hamiltonian, and the rates of coordinates and momenta.
 
-use super::{Limits, Simplifier, quaternion_symbols, rank_of_symbol};
+use super::{EquationSizeLimits, Simplifier, quaternion_symbols, rank_of_symbol};
 use crate::algebra::normal::NormalFormCache;
 use crate::algebra::polynomial::{Polynomial, Ring};
 use crate::expr::replace::substitute_symbols_in_all;
@@ -65,7 +65,7 @@ pub fn canonical_equations<'g>(
     let all: Vec<Expr<'g>> =
         [hamiltonian].into_iter().chain(velocity).chain(rate).chain(determinants).collect();
     let all: Vec<Polynomial> = all.iter().map(|e| normal.normal_form(*e)).collect::<Option<_>>()?;
-    let mut short = Simplifier::new(normal.ring, quaternion_symbols(model), &Limits::ASKED);
+    let mut short = Simplifier::new(normal.ring, quaternion_symbols(model), &EquationSizeLimits::ASKED);
     let mut all = all.iter().map(|p| short.shorten_polynomial(p)).collect::<Option<Vec<_>>>()?;
     let determinants = all.split_off(1 + 2 * model.nv());
     let momentum_rate = all.split_off(1 + model.nv());

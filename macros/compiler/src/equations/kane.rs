@@ -10,10 +10,10 @@
 //! quasi-velocities).
 
 use super::written::{
-    coordinate_rate_flags, joint_velocity_name_and_dots, name_and_derivative_order,
+    coordinate_rate_velocity_flags, joint_velocity_name_and_dots, name_and_derivative_order,
     typeset_names_with_extra_names, wrap_at_page_width,
 };
-use super::{Limits, Simplifier, quaternion_symbols, rank_of_symbol};
+use super::{EquationSizeLimits, Simplifier, quaternion_symbols, rank_of_symbol};
 use crate::algebra::normal::NormalFormCache;
 use crate::algebra::polynomial::{Polynomial, Ring};
 use crate::diag::{Diagnostics, join_names_with_and};
@@ -89,7 +89,7 @@ pub fn kane_equations<'g>(
         }
         _ => choose_dependent_velocities(model, own, &rows).ok_or(KaneFailure::Choice)?,
     };
-    let solved = EliminatedMotion::new(own, &rows, dependent).ok_or(KaneFailure::Choice)?;
+    let solved = MotionInIndependentVelocities::new(own, &rows, dependent).ok_or(KaneFailure::Choice)?;
     let v = velocity_symbols(model);
     let mut needed = rnea::inverse_dynamics(model, joints, &v, Some(&acceleration_symbols(model)));
     let mut inputs = forces::generalized_forces_of_inputs(model, joints);
@@ -126,13 +126,13 @@ fn simplified_polynomials<'g, const N: usize>(
     lists: &[Vec<Expr<'g>>; N],
 ) -> Option<(Ring, [Vec<Polynomial>; N])> {
     let all: Vec<Expr<'g>> = lists.concat();
-    if Tape::new(&all).node_count() > Limits::ASKED.operations[1] {
+    if Tape::new(&all).node_count() > EquationSizeLimits::ASKED.operations[1] {
         return None;
     }
     let mut normal = NormalFormCache::new(model.graph, rank_of_symbol);
     normal.ring.raise_term_limits();
     let all: Vec<Polynomial> = all.iter().map(|e| normal.normal_form(*e)).collect::<Option<_>>()?;
-    let mut short = Simplifier::new(normal.ring, quaternion_symbols(model), &Limits::ASKED);
+    let mut short = Simplifier::new(normal.ring, quaternion_symbols(model), &EquationSizeLimits::ASKED);
     let mut all = all.iter().map(|p| short.shorten_polynomial(p)).collect::<Option<Vec<_>>>()?.into_iter();
     let lists = std::array::from_fn(|k| all.by_ref().take(lists[k].len()).collect());
     Some((short.ring, lists))
@@ -217,7 +217,7 @@ fn determinant_of_columns(rows: &[Vec<f64>], columns: &[usize]) -> f64 {
 }
 
 /// All velocities and accelerations in terms of the independent velocities.
-struct EliminatedMotion<'g> {
+struct MotionInIndependentVelocities<'g> {
     independent: Vec<usize>,
     dependent: Vec<usize>,
     /// Dependent velocities in terms of the independent ones.
@@ -229,8 +229,12 @@ struct EliminatedMotion<'g> {
     partial: Matrix<'g>,
 }
 
-impl<'g> EliminatedMotion<'g> {
-    fn new(model: &Model<'g>, rows: &Matrix<'g>, mut dependent: Vec<usize>) -> Option<EliminatedMotion<'g>> {
+impl<'g> MotionInIndependentVelocities<'g> {
+    fn new(
+        model: &Model<'g>,
+        rows: &Matrix<'g>,
+        mut dependent: Vec<usize>,
+    ) -> Option<MotionInIndependentVelocities<'g>> {
         let g = model.graph;
         dependent.sort_unstable();
         let independent: Vec<usize> = (0..model.nv()).filter(|k| !dependent.contains(k)).collect();
@@ -260,7 +264,8 @@ impl<'g> EliminatedMotion<'g> {
                 *value += e * Quantity::Velocity(*k).expr(g);
             }
         }
-        let mut found = EliminatedMotion { independent, dependent, values, changes: Vec::new(), partial };
+        let mut found =
+            MotionInIndependentVelocities { independent, dependent, values, changes: Vec::new(), partial };
         let rate_of_dependent_velocity = |(value, row): (&Expr<'g>, &Vec<Expr<'g>>)| {
             let start = time_derivative(model.configuration_space(), *value);
             let terms = found.independent.iter().zip(row);
@@ -294,7 +299,7 @@ impl<'g> EliminatedMotion<'g> {
 
 /// Formats Kane's equations as plain text, LaTeX and MathML.
 pub fn format_kane_equations(model: &Model<'_>, kane: &KaneEquations) -> PrintedEquations {
-    let rates = coordinate_rate_flags(model);
+    let rates = coordinate_rate_velocity_flags(model);
     let names = typeset_names_with_extra_names(model, &[]);
     let symbol_name_and_derivative_order = |symbol: Symbol| name_and_derivative_order(model, &rates, symbol);
     let primed_name = |symbol| name_with_primes(symbol_name_and_derivative_order(symbol));
@@ -313,16 +318,16 @@ pub fn format_kane_equations(model: &Model<'_>, kane: &KaneEquations) -> Printed
         let (name, dots) = joint_velocity_name_and_dots(model, k);
         (names.typeset_name(&name), dots)
     };
-    let latex_rate_symbol = |k: usize| {
+    let latex_joint_velocity = |k: usize| {
         Latex { name: &|_| typeset_joint_velocity_and_dots(k) }
             .format_symbol_power(Quantity::Velocity(k).symbol(), 1)
     };
-    let latex = KaneLines::new(kane, Latex { name: &typeset_name_and_dots }, &latex_rate_symbol);
-    let mathml_rate_symbol = |k: usize| {
+    let latex = KaneLines::new(kane, Latex { name: &typeset_name_and_dots }, &latex_joint_velocity);
+    let mathml_joint_velocity = |k: usize| {
         MathMl { name: &|_| typeset_joint_velocity_and_dots(k) }
             .format_symbol_power(Quantity::Velocity(k).symbol(), 1)
     };
-    let mathml = KaneLines::new(kane, MathMl { name: &typeset_name_and_dots }, &mathml_rate_symbol);
+    let mathml = KaneLines::new(kane, MathMl { name: &typeset_name_and_dots }, &mathml_joint_velocity);
     PrintedEquations {
         plain,
         latex: format_aligned(&[latex.velocities, latex.motion].concat()),

@@ -7,7 +7,7 @@
 //! `M ξ̈ + f_v ξ̇ + f_q ξ + f_u u = Jᵀ λ`, with all coefficients evaluated at rest. The contribution of the
 //! multipliers to `f_q` is their geometric stiffness.
 
-use super::{Limits, Simplifier, right_sides};
+use super::{EquationSizeLimits, Simplifier, right_sides};
 use crate::algebra::normal::NormalFormCache;
 use crate::algebra::polynomial::{Atom, Monomial, Polynomial, Ring};
 use crate::diag::Diagnostics;
@@ -164,7 +164,7 @@ fn polynomials_of_linear_rows<'g>(
     let values = rest.nonzero_rest_values(model, at);
     let values: Vec<(Quantity, Polynomial)> =
         values.into_iter().map(|(what, e)| Some((what, normal.normal_form(e)?))).collect::<Option<_>>()?;
-    let mut short = Simplifier::new(normal.ring, Vec::new(), &Limits::ASKED);
+    let mut short = Simplifier::new(normal.ring, Vec::new(), &EquationSizeLimits::ASKED);
     let motion = motion.iter().map(|p| short.shorten_polynomial(p)).collect::<Option<_>>()?;
     let forces = forces.iter().map(|p| short.shorten_polynomial(p)).collect::<Option<_>>()?;
     let values: Option<Vec<_>> =

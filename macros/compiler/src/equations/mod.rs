@@ -32,7 +32,7 @@ pub use print::PrintedEquations;
 pub use written::{format_canonical_equations, format_equations};
 
 /// Limits on the length of printed equations.
-pub struct Limits {
+pub struct EquationSizeLimits {
     /// Maximum number of operations of the mass matrix, and of all equations, that are expanded to
     /// polynomials. Counting operations is cheap, and the polynomials of longer expressions would be too
     /// long.
@@ -47,13 +47,16 @@ pub struct Limits {
 /// multiple of `Limits::terms`. An argument with nested functions counts each time it is printed.
 const NESTED_TERMS: usize = 20;
 
-impl Limits {
+impl EquationSizeLimits {
     /// Limits of equations that are readable in documentation.
-    pub const READABLE: Limits = Limits { operations: [200, 500], terms: 150, long: 400 };
+    pub const READABLE: EquationSizeLimits =
+        EquationSizeLimits { operations: [200, 500], terms: 150, long: 400 };
     /// Limits for equations that the user requests.
-    pub const ASKED: Limits = Limits { operations: [2000, 5000], terms: 3000, long: 8000 };
+    pub const ASKED: EquationSizeLimits =
+        EquationSizeLimits { operations: [2000, 5000], terms: 3000, long: 8000 };
     /// Limits of a readable text in generalized speeds: most of the expanded terms cancel.
-    pub const READABLE_IN_SPEEDS: Limits = Limits { operations: [2000, 5000], terms: 150, long: 8000 };
+    pub const READABLE_IN_SPEEDS: EquationSizeLimits =
+        EquationSizeLimits { operations: [2000, 5000], terms: 150, long: 8000 };
 }
 
 /// Equations of motion of a mechanism as polynomials of one ring.
@@ -84,7 +87,7 @@ pub fn derive<'g>(
     joints: &[Joint<'g>],
     mass: &Matrix<'g>,
     speeds: Option<&SpeedTransformation<'g>>,
-    limits: &Limits,
+    limits: &EquationSizeLimits,
 ) -> Option<EquationsOfMotion> {
     let mass_matrix_in_speeds =
         |mass: &Matrix<'g>| speeds.map_or_else(|| mass.clone(), |speeds| speeds.transform_mass_matrix(mass));
@@ -105,7 +108,7 @@ pub fn derive<'g>(
         return None;
     }
     let mut normal = NormalFormCache::new(model.graph, rank_of_symbol);
-    if limits.long > Limits::READABLE.long {
+    if limits.long > EquationSizeLimits::READABLE.long {
         normal.ring.raise_term_limits();
     }
     // Angles in the order of `q`, so that sums of angles are printed in this order.
@@ -159,7 +162,7 @@ pub fn derive_inertial_terms<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
     mass: &Matrix<'g>,
-    limits: &Limits,
+    limits: &EquationSizeLimits,
 ) -> Option<EquationsOfMotion> {
     if !model.constraints.is_empty() {
         return None;
@@ -261,7 +264,7 @@ struct Simplifier {
 }
 
 impl Simplifier {
-    fn new(ring: Ring, quaternions: Vec<[Symbol; 4]>, limits: &Limits) -> Simplifier {
+    fn new(ring: Ring, quaternions: Vec<[Symbol; 4]>, limits: &EquationSizeLimits) -> Simplifier {
         let written_left = limits.terms * NESTED_TERMS;
         Simplifier { ring, quaternions, long: limits.long, left: limits.terms, written_left }
     }

@@ -3,10 +3,10 @@
 
 use super::canonical::{determinant_symbol, velocities_of_momenta};
 use super::written::{
-    coordinate_rate_flags, determinant_names, determinants_sentence, name_and_derivative_order,
+    coordinate_rate_velocity_flags, determinant_names, determinants_sentence, name_and_derivative_order,
     typeset_names_with_extra_names, wrap_at_page_width,
 };
-use super::{Limits, Simplifier, quaternion_symbols, rank_of_symbol};
+use super::{EquationSizeLimits, Simplifier, quaternion_symbols, rank_of_symbol};
 use crate::algebra::normal::NormalFormCache;
 use crate::algebra::polynomial::{Polynomial, Ring};
 use crate::diag::join_names_with_and;
@@ -97,7 +97,7 @@ pub fn routh_equations<'g>(
     for list in &lists {
         found.push(list.iter().map(|e| normal.normal_form(*e)).collect::<Option<_>>()?);
     }
-    let mut short = Simplifier::new(normal.ring, quaternion_symbols(model), &Limits::ASKED);
+    let mut short = Simplifier::new(normal.ring, quaternion_symbols(model), &EquationSizeLimits::ASKED);
     let mut found = found
         .iter()
         .map(|list| list.iter().map(|p| short.shorten_polynomial(p)).collect::<Option<Vec<_>>>())
@@ -118,7 +118,7 @@ pub fn routh_equations<'g>(
 
 /// Formats Routh's equations as plain text, LaTeX and MathML.
 pub fn format_routh_equations(model: &Model<'_>, reduced: &ReducedRouthEquations) -> PrintedEquations {
-    let rates = coordinate_rate_flags(model);
+    let rates = coordinate_rate_velocity_flags(model);
     let momenta: Vec<String> =
         reduced.cyclic.iter().map(|k| format!("p_{}", model.velocities[*k].0)).collect();
     let inertias = determinant_names(model, reduced.determinants.len());

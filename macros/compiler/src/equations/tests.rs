@@ -76,7 +76,7 @@ fn value_lookup_by_name<'a>(
     model: &'a Model<'_>,
     at: &'a dyn Fn(Symbol) -> f64,
 ) -> impl Fn(&str) -> f64 + 'a {
-    let rates = written::coordinate_rate_flags(model);
+    let rates = written::coordinate_rate_velocity_flags(model);
     let quantities_with_indices_below = |n: usize, quantity: fn(usize) -> Quantity| (0..n).map(quantity);
     let quantities = quantities_with_indices_below(model.parameters.len(), Quantity::Parameter)
         .chain(quantities_with_indices_below(model.nq(), Quantity::Configuration))
@@ -137,7 +137,7 @@ fn check_values_of_printed_equations(model: &Model<'_>, e: &EquationsOfMotion) {
 fn check_against_recursive_algorithms(model: &Model<'_>) {
     let joints = crate::kinematics::joints_of_model(model);
     let mass = crba::mass_matrix(model, &joints);
-    let e = derive(model, &joints, &mass, None, &Limits::READABLE).expect("small");
+    let e = derive(model, &joints, &mass, None, &EquationSizeLimits::READABLE).expect("small");
     let (v, a) = (velocity_symbols(model), acceleration_symbols(model));
     let mut outputs = rnea::inverse_dynamics(model, &joints, &v, Some(&a));
     outputs.extend(model.constraints.iter().map(|c| c.residual.unwrap_or(c.rate)));
@@ -470,8 +470,9 @@ fn long_equations_are_printed_on_request() {
     call_with_parsed_model("-g * z", arm, |model| {
         let joints = crate::kinematics::joints_of_model(&model);
         let mass = crba::mass_matrix(&model, &joints);
-        assert!(derive(&model, &joints, &mass, None, &Limits::READABLE).is_none());
-        let e = derive(&model, &joints, &mass, None, &Limits::ASKED).expect("not too long for that");
+        assert!(derive(&model, &joints, &mass, None, &EquationSizeLimits::READABLE).is_none());
+        let e =
+            derive(&model, &joints, &mass, None, &EquationSizeLimits::ASKED).expect("not too long for that");
         let (v, a) = (velocity_symbols(&model), acceleration_symbols(&model));
         let forces = rnea::inverse_dynamics(&model, &joints, &v, Some(&a));
         for seed in 1..10 {

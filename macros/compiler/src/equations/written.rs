@@ -16,7 +16,7 @@ const PAGE: usize = 92;
 
 /// Formats equations of motion as plain text, LaTeX and MathML.
 pub fn format_equations(model: &Model<'_>, equations: &EquationsOfMotion) -> PrintedEquations {
-    let rates = coordinate_rate_flags(model);
+    let rates = coordinate_rate_velocity_flags(model);
     let (latex, mathml) = typeset_equations(model, equations, &rates);
     PrintedEquations { plain: plain_text_of_equations(model, equations, &rates), latex, mathml }
 }
@@ -75,7 +75,7 @@ fn plain_text_of_equations(model: &Model<'_>, equations: &EquationsOfMotion, rat
 
 /// Formats the canonical equations as plain text, LaTeX and MathML.
 pub fn format_canonical_equations(model: &Model<'_>, canonical: &CanonicalEquations) -> PrintedEquations {
-    let rates = coordinate_rate_flags(model);
+    let rates = coordinate_rate_velocity_flags(model);
     let name_of_momentum = |k: usize| format!("p_{}", model.velocities[k].0);
     let momenta: Vec<String> = (0..model.nv()).map(name_of_momentum).collect();
     let determinants = determinant_names(model, canonical.determinants.len());
@@ -220,7 +220,7 @@ pub(super) fn typeset_names_with_extra_names(model: &Model<'_>, others: &[String
 }
 
 /// Returns for each velocity whether it is the rate of a coordinate of the same name.
-pub(super) fn coordinate_rate_flags(model: &Model<'_>) -> Vec<bool> {
+pub(super) fn coordinate_rate_velocity_flags(model: &Model<'_>) -> Vec<bool> {
     let mut rates = vec![false; model.nv()];
     for chart in &model.charts {
         if let Chart::Plain(q, v) = chart {

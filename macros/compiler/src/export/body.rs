@@ -19,7 +19,7 @@ const TOGETHER: usize = 4;
 pub type OutputTargets<'a> = &'a dyn Fn(usize) -> Option<String>;
 
 /// Names that the body of a C function may use.
-pub struct Scope<'a> {
+pub struct CBodyScope<'a> {
     /// Arguments of the function, and results of the functions that it calls first.
     pub arguments: &'a [Argument],
     /// Names of the members of the C parameter struct.
@@ -36,7 +36,7 @@ pub const MISSING: &str = "lw_missing";
 
 struct CBodyWriter<'a> {
     program: &'a Program,
-    scope: &'a Scope<'a>,
+    scope: &'a CBodyScope<'a>,
     statements: Vec<Statement>,
     /// Expression of each instruction that is inlined; `None` for the other instructions.
     pieces: Vec<Option<CExpression>>,
@@ -49,7 +49,7 @@ struct CBodyWriter<'a> {
 pub fn write_program(
     out: &mut String,
     program: &Program,
-    scope: &Scope<'_>,
+    scope: &CBodyScope<'_>,
     places: OutputTargets<'_>,
 ) -> String {
     let pieces = vec![None; program.instructions.len()];
@@ -60,20 +60,20 @@ pub fn write_program(
         write_input_bindings(out, program, scope);
         w.write_instructions();
     }
-    let outputs: Vec<CExpression> = program.outputs.iter().map(|o| w.operand_text(*o)).collect();
+    let outputs: Vec<CExpression> = program.outputs.iter().map(|o| w.operand_expression(*o)).collect();
     write_statements(out, &w.statements, &outputs, places);
     outputs.into_iter().next().unwrap_or_default().text
 }
 
 /// Writes local constants for the arguments and parameters that the program uses.
-fn write_input_bindings(out: &mut String, program: &Program, scope: &Scope<'_>) {
+fn write_input_bindings(out: &mut String, program: &Program, scope: &CBodyScope<'_>) {
     for symbol in program.used_symbols() {
         out.push_str(&argument_constant_definition(symbol, scope));
     }
 }
 
 /// Returns the definition of the local constant of an argument or parameter.
-fn argument_constant_definition(symbol: Symbol, scope: &Scope<'_>) -> String {
+fn argument_constant_definition(symbol: Symbol, scope: &CBodyScope<'_>) -> String {
     let quantity = Quantity::from_symbol(symbol);
     match (quantity, local_constant_name(quantity, scope)) {
         (Quantity::Time, _) => String::new(),
@@ -94,7 +94,7 @@ fn argument_constant_definition(symbol: Symbol, scope: &Scope<'_>) -> String {
 }
 
 /// Returns the name of the local constant of a quantity; `None` for a quantity that the scope does not have.
-fn local_constant_name(quantity: Quantity, scope: &Scope<'_>) -> Option<String> {
+fn local_constant_name(quantity: Quantity, scope: &CBodyScope<'_>) -> Option<String> {
     match quantity {
         Quantity::Time => Some("t".to_string()),
         Quantity::Parameter(k) => scope.parameters.get(k).map(|name| format!("p_{name}")),
@@ -130,7 +130,7 @@ impl CBodyWriter<'_> {
             } else if !is_written[k] {
                 let is_sine_or_cosine_value = |a: &&Angle| a.sine == Some(k) || a.cosine == Some(k);
                 let Some(angle) = angles.list.iter().find(is_sine_or_cosine_value) else { continue };
-                let text = self.operand_text(angle.angle).text;
+                let text = self.operand_expression(angle.angle).text;
                 let mut text = format!(
                     "    double sine{k}, cosine{k};\n    lw_sin_cos({text}, &sine{k}, &cosine{k});\n"
                 );
@@ -167,7 +167,7 @@ impl CBodyWriter<'_> {
     }
 
     fn write_instruction(&mut self, k: usize) {
-        let piece = self.instruction_text(self.program.instructions[k]);
+        let piece = self.instruction_expression(self.program.instructions[k]);
         if self.program.uses[k] == 1 && piece.text.len() <= LINE {
             self.pieces[k] = Some(piece);
         } else {
@@ -185,7 +185,8 @@ impl CBodyWriter<'_> {
         }
         let list = angles.angles_by_descending_width(self.program, |_| 1);
         let padded = if count > 2 { count.next_multiple_of(TOGETHER) } else { count };
-        let mut texts: Vec<String> = list.iter().map(|angle| self.operand_text(angle.angle).text).collect();
+        let mut texts: Vec<String> =
+            list.iter().map(|angle| self.operand_expression(angle.angle).text).collect();
         texts.resize(padded, "0.0".to_string());
         let mut text = format!("    double sine[{padded}], cosine[{padded}];\n");
         if count > 2 {
@@ -210,7 +211,7 @@ impl CBodyWriter<'_> {
         self.statements.push(Statement { names, text });
     }
 
-    fn operand_text(&mut self, o: Operand) -> CExpression {
+    fn operand_expression(&mut self, o: Operand) -> CExpression {
         match o {
             Operand::Const(c) if c.is_sign_negative() => {
                 CExpression { level: 2, ..CExpression::from_atomic_text(c_numeric_literal(c)) }
@@ -233,33 +234,33 @@ impl CBodyWriter<'_> {
         }
     }
 
-    fn instruction_text(&mut self, op: Op) -> CExpression {
+    fn instruction_expression(&mut self, op: Op) -> CExpression {
         match op {
             Op::Neg(a) => {
-                let a = self.operand_text(a);
+                let a = self.operand_expression(a);
                 CExpression { text: format!("-{}", a.text_at_precedence(3)), level: 2, needs: a.needs }
             }
             Op::Add(a, b) => self.infix_operation([a, b], "+", (1, 2)),
             Op::Sub(a, b) => self.infix_operation([a, b], "-", (1, 2)),
             Op::Mul(a, b) => self.infix_operation([a, b], "*", (2, 3)),
             Op::Div(a, b) => self.infix_operation([a, b], "/", (2, 3)),
-            Op::MulAdd(a, b, c) => self.call_text("lw_mul_add", &[a, b, c]),
-            Op::MulSub(a, b, c) => self.call_text("lw_mul_sub", &[a, b, c]),
-            Op::NegMulAdd(a, b, c) => self.call_text("lw_neg_mul_add", &[a, b, c]),
-            Op::Call(f, a) => self.call_text(&elementary_function_name(f), &[a]),
-            Op::Atan2(a, b) => self.call_text("atan2", &[a, b]),
-            Op::Pow(a, b) => self.call_text("pow", &[a, b]),
-            Op::Extreme(Extreme::Min, a, b) => self.call_text("fmin", &[a, b]),
-            Op::Extreme(Extreme::Max, a, b) => self.call_text("fmax", &[a, b]),
-            Op::Table(lookup, a, b, c) => self.table_lookup_text(lookup, [a, b, c]),
+            Op::MulAdd(a, b, c) => self.call_expression("lw_mul_add", &[a, b, c]),
+            Op::MulSub(a, b, c) => self.call_expression("lw_mul_sub", &[a, b, c]),
+            Op::NegMulAdd(a, b, c) => self.call_expression("lw_neg_mul_add", &[a, b, c]),
+            Op::Call(f, a) => self.call_expression(&elementary_function_name(f), &[a]),
+            Op::Atan2(a, b) => self.call_expression("atan2", &[a, b]),
+            Op::Pow(a, b) => self.call_expression("pow", &[a, b]),
+            Op::Extreme(Extreme::Min, a, b) => self.call_expression("fmin", &[a, b]),
+            Op::Extreme(Extreme::Max, a, b) => self.call_expression("fmax", &[a, b]),
+            Op::Table(lookup, a, b, c) => self.table_lookup_expression(lookup, [a, b, c]),
             // Rejected by `check`.
             Op::Sum(..) | Op::Lane(..) | Op::Join(..) => CExpression::from_atomic_text(MISSING.to_string()),
         }
     }
 
-    fn table_lookup_text(&mut self, lookup: Lookup, x: [Operand; 3]) -> CExpression {
+    fn table_lookup_expression(&mut self, lookup: Lookup, x: [Operand; 3]) -> CExpression {
         let count = lookup.variable_count();
-        let pieces: Vec<CExpression> = x.iter().take(count).map(|o| self.operand_text(*o)).collect();
+        let pieces: Vec<CExpression> = x.iter().take(count).map(|o| self.operand_expression(*o)).collect();
         let x: Vec<&str> = pieces.iter().map(|piece| piece.text.as_str()).collect();
         let orders: Vec<String> = lookup.derivative_orders().iter().map(ToString::to_string).collect();
         let Some(table) = self.scope.tables.get(lookup.table_index()) else {
@@ -270,13 +271,13 @@ impl CBodyWriter<'_> {
     }
 
     fn infix_operation(&mut self, [a, b]: [Operand; 2], sign: &str, (level, right): (u8, u8)) -> CExpression {
-        let (a, b) = (self.operand_text(a), self.operand_text(b));
+        let (a, b) = (self.operand_expression(a), self.operand_expression(b));
         let text = format!("{} {sign} {}", a.text_at_precedence(level), b.text_at_precedence(right));
         CExpression { text, needs: [a.needs, b.needs].concat(), level }
     }
 
-    fn call_text(&mut self, function: &str, arguments: &[Operand]) -> CExpression {
-        let pieces: Vec<CExpression> = arguments.iter().map(|o| self.operand_text(*o)).collect();
+    fn call_expression(&mut self, function: &str, arguments: &[Operand]) -> CExpression {
+        let pieces: Vec<CExpression> = arguments.iter().map(|o| self.operand_expression(*o)).collect();
         let list: Vec<&str> = pieces.iter().map(|piece| piece.text.as_str()).collect();
         let text = format!("{function}({})", list.join(", "));
         CExpression { text, needs: pieces.into_iter().flat_map(|piece| piece.needs).collect(), level: 3 }

@@ -136,7 +136,7 @@ const FRAMES: [HandwrittenFunction; 4] = [
 pub const LIMITS: &str = "limits";
 
 /// Returns the signatures of all functions that a program can call.
-pub fn all_signatures(i: &ExportedMechanism<'_>) -> Vec<ExportedSignature> {
+pub fn callable_function_signatures(i: &ExportedMechanism<'_>) -> Vec<ExportedSignature> {
     let mut functions: Vec<ExportedSignature> =
         i.public.iter().map(|f| ExportedSignature::from_function(f, i)).collect();
     functions.extend(i.reactions.iter().map(|f| reaction_signature(f, i)));

@@ -1,6 +1,6 @@
 //! Interface of a mechanism outside Rust: its names, its sizes, and the functions that exist there.
 
-use super::handwritten::{METHODS, all_signatures};
+use super::handwritten::{METHODS, callable_function_signatures};
 use super::names;
 use super::signatures::{ExportedSignature, reaction_name};
 use crate::catalogue::{Argument, CalledFunction, GeneratedId, REACTION, Shape, TOUCHED};
@@ -107,12 +107,12 @@ impl<'a> ExportedMechanism<'a> {
         output.functions.iter().for_each(|f| interface.add_function_to_group(f));
         // A static function must precede its callers, and must have one.
         interface.hidden.sort_by_key(|f| f.id == GeneratedId::AccelerationsAndInverse);
-        if !output.functions.iter().any(|f| matches!(f.shape, Shape::CalledForward(_))) {
+        if !output.functions.iter().any(|f| matches!(f.shape, Shape::ForwardDerivativesByCalls(_))) {
             interface.hidden.retain(|f| f.id != GeneratedId::AccelerationsAndInverse);
         }
         interface.determine_available_integration_steps(options.reproducible);
         interface.left_out.extend(options.left_out.iter().cloned());
-        interface.functions = all_signatures(&interface);
+        interface.functions = callable_function_signatures(&interface);
         Ok(interface)
     }
 

@@ -1,9 +1,9 @@
 //! Contacts of a file that fit into the number of contact points of a mechanism.
 
 use crate::hull::{Hull, MAX_VERTICES};
-use crate::syntax::contact::{MAX_CONTACT_POINTS, select_collisions};
+use crate::syntax::contact::{MAX_CONTACT_POINTS, collision_shape_indices};
 use crate::syntax::{
-    BodyOrInertiaMethod, Collision, Contact, Description, Expr, ExprKind, FileContactKind, Key,
+    BodyOrInertiaMethod, CollisionShape, Contact, Description, Expr, ExprKind, FileContactKind, Key,
     SurfaceFeatureCounts, SurfaceId,
 };
 
@@ -97,7 +97,7 @@ pub(super) fn one_plus_friction_moment_count(contact: &Contact) -> usize {
 
 /// Returns the number of contact points of a contact, with its moments of friction; `None` if a pair of its
 /// surfaces is not supported. A compliant contact has none.
-pub(super) fn contact_point_count(contact: &Contact, collisions: &[Collision]) -> Option<usize> {
+pub(super) fn contact_point_count(contact: &Contact, collisions: &[CollisionShape]) -> Option<usize> {
     if contact.is_compliant() {
         return Some(0);
     }
@@ -114,13 +114,13 @@ pub(super) fn contact_point_count(contact: &Contact, collisions: &[Collision]) -
 /// Returns the numbers of vertices and corners of the surfaces of one side of a contact.
 fn vertex_and_corner_counts_of_surfaces(
     surface: &Expr,
-    collisions: &[Collision],
+    collisions: &[CollisionShape],
 ) -> Vec<SurfaceFeatureCounts> {
-    if let Some(selected) = select_collisions(surface, collisions) {
+    if let Some(selected) = collision_shape_indices(surface, collisions) {
         return selected
             .into_iter()
             .map(|k| {
-                surface_vertex_and_corner_counts(Some(collisions[k].shape.surface()), &collisions[k].hull)
+                surface_vertex_and_corner_counts(Some(collisions[k].shape.surface_id()), &collisions[k].hull)
             })
             .collect();
     }

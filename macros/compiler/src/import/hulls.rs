@@ -8,9 +8,9 @@ use super::mesh;
 use super::pose::{Vector, matrix_times_vector, vector_sum};
 use crate::diag::Diagnostics;
 use crate::hull::{Hull, HullError, MAX_VERTICES};
-use crate::syntax::contact::{MAX_CONTACT_POINTS, select_collisions};
+use crate::syntax::contact::{MAX_CONTACT_POINTS, collision_shape_indices};
 use crate::syntax::{
-    Collision, Contact, Description, Expr, ExprKind, FileContactKind, MeshVertices, Name, Shape,
+    CollisionShape, Contact, Description, Expr, ExprKind, FileContactKind, MeshVertices, Name, Shape,
 };
 use std::path::{Path, PathBuf};
 
@@ -34,7 +34,7 @@ pub fn read_hulls(description: &mut Description, folder: &Path, cx: &mut Diagnos
             replace_hull_file_by_vertices(side, folder, (&mut files, &mut notes), cx);
         }
     }
-    let is_mesh = |part: &Collision| part.shape == Shape::Mesh && part.mesh.is_some();
+    let is_mesh = |part: &CollisionShape| part.shape == Shape::Mesh && part.mesh.is_some();
     let share = max_vertices_per_mesh(&description.contacts, &description.collisions);
     // Vertices allowed for each mesh, zero if no contact uses it, and whether a mechanism without its hull is
     // an error. Declared contacts take precedence over contacts of the file with planes, and these over other
@@ -47,7 +47,7 @@ pub fn read_hulls(description: &mut Description, folder: &Path, cx: &mut Diagnos
             description.contacts.iter().filter(|contact| is_file_contact_with_plane(contact) == kind)
         {
             for side in [&contact.first, &contact.second] {
-                for k in select_collisions(side, &description.collisions).unwrap_or_default() {
+                for k in collision_shape_indices(side, &description.collisions).unwrap_or_default() {
                     maxima[k] = (most, kind.is_none());
                 }
             }
@@ -167,7 +167,7 @@ fn describe_hull_error(error: HullError) -> String {
 
 /// Returns the number of vertices for each mesh in the contacts with planes that the file declares: the
 /// maximum number of contact points without those of other shapes, divided by the number of meshes.
-fn max_vertices_per_mesh(contacts: &[Contact], collisions: &[Collision]) -> usize {
+fn max_vertices_per_mesh(contacts: &[Contact], collisions: &[CollisionShape]) -> usize {
     let (mut others, mut meshes) = (0, 0);
     let is_on_plane =
         |contact: &&Contact| contact.of_file.is_some_and(|of_file| of_file.kind == FileContactKind::Plane);
@@ -185,13 +185,13 @@ fn max_vertices_per_mesh(contacts: &[Contact], collisions: &[Collision]) -> usiz
 /// most `share` vertices, or no convex hull represents the mesh.
 fn omit_contacts_without_hulls(description: &mut Description, share: usize) {
     let collisions = &description.collisions;
-    let has_hulls = |contact: &Contact| {
+    let has_all_mesh_hulls = |contact: &Contact| {
         let sides = [&contact.first, &contact.second].into_iter();
-        let parts = sides.flat_map(|side| select_collisions(side, collisions).unwrap_or_default());
+        let parts = sides.flat_map(|side| collision_shape_indices(side, collisions).unwrap_or_default());
         contact.of_file.is_none() || parts.into_iter().all(|k| !collisions[k].is_mesh_without_hull())
     };
     let (with_hulls, without): (Vec<Contact>, Vec<Contact>) =
-        std::mem::take(&mut description.contacts).into_iter().partition(has_hulls);
+        std::mem::take(&mut description.contacts).into_iter().partition(has_all_mesh_hulls);
     description.contacts = with_hulls;
     if without.is_empty() {
         return;

@@ -3,7 +3,7 @@
 use crate::diag::Place;
 use crate::syntax::file_parameters::FileField;
 use crate::syntax::{
-    Body, Collision, Constraint, Contact, Expr, FileForceElement, Joint, Limit, Name, Visual,
+    Body, CollisionShape, Constraint, Contact, Expr, FileForceElement, Joint, Limit, Name, VisualShape,
 };
 use std::path::PathBuf;
 
@@ -34,9 +34,9 @@ pub struct ImportedMechanism {
     /// Contact pairs, if the options request them.
     pub contacts: Vec<Contact>,
     /// Collision geometry of the links, if the options request it.
-    pub collisions: Vec<Collision>,
+    pub collisions: Vec<CollisionShape>,
     /// Visual geometry of the links, if the options request it.
-    pub visuals: Vec<Visual>,
+    pub visuals: Vec<VisualShape>,
     /// Descriptions of the values that were rounded on request: joint, entry, value before and after.
     pub snapped: Vec<String>,
     /// Descriptions of contents of the file that the mechanism does not represent.

@@ -48,7 +48,7 @@ pub fn import_file(
         file::report_file_error(&file::too_large_message(text.len() as u64), &options.path, cx);
         return None;
     }
-    let text = &*xml::clean_xml_text(text);
+    let text = &*xml::blank_out_nonstandard_xml(text);
     match options.format {
         FileFormat::Urdf => import_urdf(text, &folder.join(&options.path.text), options, cx),
         FileFormat::Mjcf => mjcf::import_file(text, &folder.join(&options.path.text), options, cx),
@@ -65,5 +65,5 @@ fn import_urdf(
     let cx = &mut context::Cx::new(text, &options.path, cx);
     let declared = OnceCell::new();
     let document = xml::parse_document(text, &declared, options.format, cx)?;
-    urdf::read_root_element(document.root_element(), path.parent().unwrap_or(path), options, cx)
+    urdf::mechanism_from_root_element(document.root_element(), path.parent().unwrap_or(path), options, cx)
 }

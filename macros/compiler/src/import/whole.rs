@@ -43,7 +43,7 @@ impl ComposedText {
     }
 
     /// Appends bytes of a file to the composed text.
-    pub(super) fn append_file_bytes(
+    pub(super) fn append_file_excerpt(
         &mut self,
         file: usize,
         from: usize,

@@ -36,7 +36,7 @@ fn max_depth(format: FileFormat) -> usize {
 /// Returns the text of a file in which whitespace characters that XML does not know, and an XML declaration
 /// after empty lines, are replaced by spaces. Other readers of URDF accept both. Lines and columns are
 /// preserved.
-pub(super) fn clean_xml_text(text: &str) -> Cow<'_, str> {
+pub(super) fn blank_out_nonstandard_xml(text: &str) -> Cow<'_, str> {
     match with_standard_whitespace(text.trim_end_matches('\0')) {
         Cow::Borrowed(plain) => blank_out_late_xml_declaration(plain),
         Cow::Owned(plain) => Cow::Owned(blank_out_late_xml_declaration(&plain).into_owned()),

@@ -37,7 +37,7 @@ pub fn sample_feasible_configurations(
 ) -> Vec<ConfigurationSample> {
     let mut found: Vec<ConfigurationSample> = Vec::new();
     let mut worst: Option<(usize, f64)> = None;
-    let wanted = if has_constant_residuals(model) { STARTS } else { STARTS / 3 };
+    let wanted = if residuals_depend_only_on_configuration(model) { STARTS } else { STARTS / 3 };
     let possible = WORK / rows.evaluation_cost().max(1);
     let starts = wanted.min(possible / STEPS).max(1);
     let steps = STEPS.min(possible);
@@ -61,7 +61,7 @@ pub fn sample_feasible_configurations(
 }
 
 /// Returns true if no residual depends on a parameter or on time.
-fn has_constant_residuals(model: &Model<'_>) -> bool {
+fn residuals_depend_only_on_configuration(model: &Model<'_>) -> bool {
     let residuals: Vec<Expr<'_>> = model.constraints.iter().filter_map(|c| c.residual).collect();
     symbols_in(&residuals)
         .into_iter()

@@ -36,12 +36,12 @@ pub fn velocity_independent_row_flags(model: &Model<'_>, rows: &CompiledConstrai
         samples.iter().map(|j| j.iter().map(|row| dot(row, row).sqrt()).collect()).collect();
     let sample_zero_rows = |seed| rows.numerically_zero_row_flags(&random_configuration(model, seed), seed);
     let zeros: Vec<Vec<bool>> = (0..SAMPLES).map(sample_zero_rows).collect();
-    let is_constant_row = |row| {
+    let has_zero_jacobian_row = |row| {
         rows.is_velocity_independent(row)
             || zeros.iter().all(|zeros| zeros[row])
             || sizes.iter().all(|sizes| is_negligible_row(sizes, row))
     };
-    (0..model.constraints.len()).map(is_constant_row).collect()
+    (0..model.constraints.len()).map(has_zero_jacobian_row).collect()
 }
 
 /// Reports rows that no velocity influences and that are violated: they have the same value in every

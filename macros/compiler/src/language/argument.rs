@@ -45,7 +45,7 @@ impl Argument {
     pub const AXIS: Argument = Argument { name: "axis", kind: ArgumentKind::Direction };
 
     /// Returns an argument with this name that is a length.
-    pub const fn length(name: &'static str) -> Argument {
+    pub const fn length_argument(name: &'static str) -> Argument {
         Argument { name, kind: ArgumentKind::Length }
     }
 

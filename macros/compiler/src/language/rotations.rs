@@ -55,7 +55,7 @@ table! {
         Spherical = natural_axes_row("spherical", &[VECTOR]);
         /// Tangent, normal and binormal of a curve (Frenet and Serret).
         Frenet = natural_axes_row("frenet",
-            &[Argument::length("curve"), Argument::new("coordinate", ArgumentKind::Coordinate)]);
+            &[Argument::length_argument("curve"), Argument::new("coordinate", ArgumentKind::Coordinate)]);
     }
 }
 

@@ -22,12 +22,12 @@ pub struct SolidRow {
 
 const MASS: Argument = Argument::MASS;
 const AXIS: Argument = Argument::AXIS;
-const RADIUS: Argument = Argument::length("radius");
-const LENGTH: Argument = Argument::length("length");
-const HEIGHT: Argument = Argument::length("height");
-const X: Argument = Argument::length("x length");
-const Y: Argument = Argument::length("y length");
-const Z: Argument = Argument::length("z length");
+const RADIUS: Argument = Argument::length_argument("radius");
+const LENGTH: Argument = Argument::length_argument("length");
+const HEIGHT: Argument = Argument::length_argument("height");
+const X: Argument = Argument::length_argument("x length");
+const Y: Argument = Argument::length_argument("y length");
+const Z: Argument = Argument::length_argument("z length");
 
 const fn inertia_argument(name: &'static str) -> Argument {
     Argument::new(name, ArgumentKind::Inertia)
@@ -70,7 +70,7 @@ table! {
         Tube = SolidRow {
             name: "tube", synonyms: "pipe hollowcylinder",
             arguments: &[
-                MASS, Argument::length("inner radius"), Argument::length("outer radius"),
+                MASS, Argument::length_argument("inner radius"), Argument::length_argument("outer radius"),
                     HEIGHT, AXIS,
             ],
             piece: Some(PieceShape::Tube),
@@ -143,8 +143,8 @@ table! {
         Ellipsoid = SolidRow {
             name: "ellipsoid", synonyms: "",
             arguments: &[
-                MASS, Argument::length("x radius"), Argument::length("y radius"),
-                    Argument::length("z radius"),
+                MASS, Argument::length_argument("x radius"), Argument::length_argument("y radius"),
+                    Argument::length_argument("z radius"),
             ],
             piece: Some(PieceShape::Ellipsoid),
             inertia: |n, _| diagonal_inertia_of_lengths(n[0] * 0.2, n),

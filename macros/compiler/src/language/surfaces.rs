@@ -34,11 +34,12 @@ const ON_PLANE: &[Option<SurfaceId>] = &[
 ];
 const ON_TERRAIN: &[Option<SurfaceId>] = &[None, Some(Sphere), Some(Capsule), Some(Cuboid), Some(Hull)];
 
-const RADIUS: Argument = Argument::length("radius");
-const LENGTH: Argument = Argument::length("length");
+const RADIUS: Argument = Argument::length_argument("radius");
+const LENGTH: Argument = Argument::length_argument("length");
 const AXIS: Argument = Argument::AXIS;
 const HALF_ANGLE: Argument = Argument::new("half_angle", ArgumentKind::HalfAngle);
-const AXES: &[Argument] = &[Argument::length("a"), Argument::length("b"), Argument::length("c")];
+const AXES: &[Argument] =
+    &[Argument::length_argument("a"), Argument::length_argument("b"), Argument::length_argument("c")];
 
 const fn surface_row(
     name: &'static str,
@@ -55,7 +56,7 @@ table! {
         /// Surface `circle`: the rim of a disk.
         Circle = surface_row("circle", &[RADIUS, AXIS], NONE, &[]);
         /// A tyre: radius of the centre line, radius of the section.
-        Torus = surface_row("torus", &[RADIUS, Argument::length("tube_radius"), AXIS], NONE, &[]);
+        Torus = surface_row("torus", &[RADIUS, Argument::length_argument("tube_radius"), AXIS], NONE, &[]);
         /// Surface `sphere`: the outside of a sphere.
         Sphere = surface_row("sphere", &[RADIUS], ROUND, &[Sphere]);
         /// Surface `ellipsoid`, given by its semi-axes.
@@ -79,7 +80,7 @@ table! {
         /// Surface `surface`: a parametric surface, given by points that depend on two coordinates.
         ParametricSurface = surface_row("surface",
             &[Argument::new("u", ArgumentKind::Coordinate), Argument::new("w", ArgumentKind::Coordinate),
-                Argument::length("point")],
+                Argument::length_argument("point")],
             NONE, &[Circle, Torus, Sphere, Ellipsoid]);
         /// A height over x and y, as an expression of the horizontal coordinates `u`, `w`.
         Terrain = surface_row("terrain", &[Argument::new("height", ArgumentKind::Height)], ON_TERRAIN, &[]);
@@ -123,11 +124,11 @@ pub struct SurfaceFeatureCounts {
 impl SurfaceFeatureCounts {
     /// Returns the number of contact points of two surfaces; `None` if their contact is not supported.
     pub fn contact_point_count(&self, other: &SurfaceFeatureCounts) -> Option<usize> {
-        self.point_count_on(other).or_else(|| other.point_count_on(self))
+        self.listed_contact_point_count(other).or_else(|| other.listed_contact_point_count(self))
     }
 
     /// Returns the number of contact points if the table lists this surface on the other one.
-    fn point_count_on(&self, other: &SurfaceFeatureCounts) -> Option<usize> {
+    fn listed_contact_point_count(&self, other: &SurfaceFeatureCounts) -> Option<usize> {
         let below = other.id.filter(|below| below.row().contacts.contains(&self.id))?;
         let Some(above) = self.id else { return Some(1) };
         Some(match (above, below) {

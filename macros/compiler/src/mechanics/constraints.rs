@@ -106,7 +106,7 @@ pub fn minimum_norm_terms<'g>(
 /// their normal forces.
 pub fn constraint_forces<'g>(model: &Model<'g>, lambda: &[Expr<'g>]) -> Vec<Expr<'g>> {
     let mut forces = vec![model.graph.zero(); model.nv()];
-    for ((row, drag), l) in jacobian(model).iter().zip(friction::jacobian_of_friction(model)).zip(lambda) {
+    for ((row, drag), l) in jacobian(model).iter().zip(friction::friction_jacobian(model)).zip(lambda) {
         let size = l.apply_function(Function::Abs);
         for ((force, entry), drag) in forces.iter_mut().zip(row).zip(drag) {
             *force += *entry * *l + drag * size;

@@ -80,7 +80,7 @@ pub fn inverse_dynamics<'g>(
 ) -> ForceDerivatives<'g> {
     let v = velocity_symbols(model);
     if let DerivationMethod::Recursion(most) = method
-        && has_constant_subspaces(model)
+        && supports_recursive_derivatives(model)
     {
         let mut found = analytic::inverse_dynamics(model, joints, &v, a, most);
         symbolic::add_passive_force_derivatives(model, &mut found);
@@ -147,7 +147,7 @@ pub fn subtract_matrix<'g>(m: &mut Matrix<'g>, other: &Matrix<'g>) {
 }
 
 /// Returns true if every motion subspace is constant in link axes, so that the recursion applies.
-pub fn has_constant_subspaces(model: &Model<'_>) -> bool {
+pub fn supports_recursive_derivatives(model: &Model<'_>) -> bool {
     model.inertances.is_empty()
         && model.acceleration_forces.is_empty()
         && model.links.iter().all(|link| link.motion.has_constant_subspace())

@@ -32,7 +32,7 @@ pub fn sliding_contact_constraints(model: &Model<'_>) -> Vec<usize> {
 }
 
 /// Returns `T`, with a row for each constraint and a column for each velocity.
-pub fn jacobian_of_friction<'g>(model: &Model<'g>) -> Matrix<'g> {
+pub fn friction_jacobian<'g>(model: &Model<'g>) -> Matrix<'g> {
     let friction_jacobian_row = |c: &crate::mechanism::Constraint<'g>| {
         let mut row = vec![model.graph.zero(); model.nv()];
         let rates: Vec<Expr<'g>> = c.friction.iter().map(|d| d.rate).collect();
@@ -54,7 +54,7 @@ pub fn solve_with_friction<'g>(
 ) -> Vec<Expr<'g>> {
     let nv = mass.len();
     let rows = jacobian(model);
-    let (friction, last) = (jacobian_of_friction(model), sliding_contact_constraints(model));
+    let (friction, last) = (friction_jacobian(model), sliding_contact_constraints(model));
     let mut k = constrained_system_matrix(mass, &rows);
     for (n, row) in last.iter().enumerate() {
         let side = Quantity::Given(SuppliedQuantity::Side, n).expr(model.graph);

@@ -10,7 +10,7 @@ use crate::kinematics::Joint;
 use crate::mechanism::{Model, Quantity};
 
 /// Hamilton's equations as functions of `q` and the generalized momenta.
-pub struct Hamilton<'g> {
+pub struct HamiltonEquations<'g> {
     /// Hamiltonian `H = p·v − T + U`.
     pub hamiltonian: Expr<'g>,
     /// Joint velocities `v` as functions of the momenta.
@@ -21,7 +21,7 @@ pub struct Hamilton<'g> {
 
 /// Solves `p = M v + p₀` for the velocities and inserts them into the energy and the rates, where `p₀` is the
 /// momentum due to motion that is prescribed in time.
-pub fn derive<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &Matrix<'g>) -> Hamilton<'g> {
+pub fn derive<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &Matrix<'g>) -> HamiltonEquations<'g> {
     let g = model.graph;
     let zero = vec![g.zero(); model.nv()];
     let p: Vec<Expr<'g>> = (0..model.nv()).map(|k| Quantity::Momentum(k).expr(g)).collect();
@@ -38,7 +38,7 @@ pub fn derive<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &Matrix<'g>) ->
     let mut rate = momentum::momentum_rate_without_inputs(model, joints, &velocity);
     rate.iter_mut().enumerate().for_each(|(k, rate)| *rate += Quantity::Force(k).expr(g));
     let hamiltonian = replace_velocities(&[hamiltonian], &velocity)[0];
-    Hamilton { hamiltonian, momentum_rate: replace_velocities(&rate, &velocity), velocity }
+    HamiltonEquations { hamiltonian, momentum_rate: replace_velocities(&rate, &velocity), velocity }
 }
 
 /// Returns expressions with the velocity symbols replaced by `v`. Elements' energies and forces contain the

@@ -7,7 +7,7 @@ use crate::kinematics::Joint;
 
 /// Returns the solution of `m x = r` for a symmetric matrix `m`.
 pub fn solve_symmetric<'g>(m: Matrix<'g>, r: Vec<Expr<'g>>, joints: &[Joint<'g>]) -> Vec<Expr<'g>> {
-    let order = elimination_order(joints, r.len());
+    let order = order_from_leaves_to_root(joints, r.len());
     solve_in_order(m, r, &order, 0).x
 }
 
@@ -102,7 +102,7 @@ pub fn inverse_of_second_ldl_pivot<'g>(a: Expr<'g>, b: Expr<'g>, c: Expr<'g>) ->
 
 /// Returns the entries of `v` from the leaves to the root. Entries that move no link and appear only in
 /// elements come first.
-pub fn elimination_order(joints: &[Joint<'_>], nv: usize) -> Vec<usize> {
+pub fn order_from_leaves_to_root(joints: &[Joint<'_>], nv: usize) -> Vec<usize> {
     let mut seen = vec![true; nv];
     joints.iter().flat_map(|joint| &joint.dofs).for_each(|dof| seen[dof.index] = false);
     let mut order: Vec<usize> = (0..nv).filter(|k| seen[*k]).collect();

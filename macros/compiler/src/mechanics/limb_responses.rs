@@ -2,7 +2,7 @@
 //! [`VectorisedMechanism`].
 
 use super::crba::{Matrix, mass_matrix};
-use super::ldl::elimination_order;
+use super::ldl::order_from_leaves_to_root;
 use crate::expr::Expr;
 use crate::vectorise::{LimbRows, VectorisedMechanism, join_lanes};
 use std::collections::BTreeMap;
@@ -90,7 +90,7 @@ fn cyclically_shifted_lanes(e: Expr<'_>, n: usize, by: usize) -> Expr<'_> {
 impl<'g> LaneMassFactorisation<'g> {
     fn new(limbs: &VectorisedMechanism<'g>, groups: Vec<Option<usize>>) -> LaneMassFactorisation<'g> {
         let mut m: Matrix<'g> = mass_matrix(&limbs.model, &limbs.joints);
-        let order = elimination_order(&limbs.joints, m.len());
+        let order = order_from_leaves_to_root(&limbs.joints, m.len());
         let (mut rows, mut inverse) = (vec![Vec::new(); m.len()], Vec::new());
         inverse.extend((0..m.len()).map(|k| m[k][k]));
         for (step, &k) in order.iter().enumerate() {
@@ -177,9 +177,11 @@ impl<'g> LaneMassFactorisation<'g> {
                 });
                 terms.reduce(|a, b| a + b).unwrap_or_else(|| self.inverse[0].zero())
             };
-        let is_in_trunk = |k: usize| self.groups[k].is_none();
+        let is_trunk_velocity = |k: usize| self.groups[k].is_none();
         if a.family != b.family {
-            return inverse_weighted_dot_product(&is_in_trunk, &|k| [x[k].lane(a.lane), y[k].lane(b.lane)]);
+            return inverse_weighted_dot_product(&is_trunk_velocity, &|k| {
+                [x[k].lane(a.lane), y[k].lane(b.lane)]
+            });
         }
         let n = first.width;
         let by = (n + b.lane - a.lane) % n;
@@ -188,14 +190,14 @@ impl<'g> LaneMassFactorisation<'g> {
         }
         match by {
             0 => inverse_weighted_dot_product(
-                &|k| is_in_trunk(k) || self.groups[k] == Some(first.group),
+                &|k| is_trunk_velocity(k) || self.groups[k] == Some(first.group),
                 &|k| [x[k], y[k]],
             )
             .lane(a.lane),
-            _ => {
-                inverse_weighted_dot_product(&is_in_trunk, &|k| [x[k], cyclically_shifted_lanes(y[k], n, by)])
-                    .lane(a.lane)
-            }
+            _ => inverse_weighted_dot_product(&is_trunk_velocity, &|k| {
+                [x[k], cyclically_shifted_lanes(y[k], n, by)]
+            })
+            .lane(a.lane),
         }
     }
 }

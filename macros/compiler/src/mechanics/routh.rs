@@ -19,7 +19,7 @@ const ROUNDING: f64 = 1e-11;
 
 /// Routh's equations: the mechanism without its cyclic coordinates, as functions of `q`, the velocities of
 /// the other coordinates and the momenta of the cyclic coordinates.
-pub struct Routh<'g> {
+pub struct RouthEquations<'g> {
     /// Indices of the velocities of the cyclic coordinates.
     pub cyclic: Vec<usize>,
     /// Routhian `R` as an expression.
@@ -90,7 +90,7 @@ pub fn derive<'g>(
     joints: &[Joint<'g>],
     mass: &Matrix<'g>,
     cyclic: Vec<usize>,
-) -> Routh<'g> {
+) -> RouthEquations<'g> {
     let g = model.graph;
     let own = matrix_block(mass, &cyclic, &cyclic);
     let mut solve_cyclic_mass_block = |r: Vec<Expr<'g>>| Some(solve_linear_system(&own, r));
@@ -117,7 +117,7 @@ pub fn derive<'g>(
     let right =
         selected_forces(&others).into_iter().zip(&taken).map(|(f, taken)| f - dot_product(taken, &of_cyclic));
     let acceleration = solve_linear_system(&reduced, right.collect());
-    Routh { cyclic, routhian, velocity, acceleration }
+    RouthEquations { cyclic, routhian, velocity, acceleration }
 }
 
 /// Returns the symbols of all velocities, where the velocities of the cyclic coordinates are replaced by

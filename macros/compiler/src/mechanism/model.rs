@@ -245,7 +245,7 @@ impl<'g> Model<'g> {
 
     /// Returns true if constraints depend on others in every admissible configuration although the
     /// elimination did not identify them, as in Bricard's linkage.
-    pub fn is_overconstrained(&self) -> bool {
+    pub fn has_unpruned_redundancy(&self) -> bool {
         let plain = self.constraints.iter().all(|c| c.friction.is_empty() && !c.determines);
         plain && self.constraints.len() + self.freedom.velocities > self.nv()
     }

@@ -29,7 +29,7 @@ pub fn cheapest_joint_placement(
     parent: &NumericFrame,
     frame: &NumericFrame,
 ) -> Option<(f64, NumericFrame, f64)> {
-    let plain = site.place.as_ref()?.placement_between_frames(parent, frame);
+    let plain = site.place.as_ref()?.placement_in_changed_frames(parent, frame);
     let mut best = (placement_cost(site, &plain, frame), plain, 0.0);
     if let FrameFreedom::Turn { k, offset: true } = site.freedom {
         for (rotation, angle) in sparse_rotations_with_angles(&plain.rotation, k) {

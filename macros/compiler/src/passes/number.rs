@@ -126,7 +126,7 @@ impl NumericFrame {
     }
 
     /// Returns the frame transformation `other⁻¹ self next`.
-    pub fn placement_between_frames(&self, other: &NumericFrame, next: &NumericFrame) -> NumericFrame {
+    pub fn placement_in_changed_frames(&self, other: &NumericFrame, next: &NumericFrame) -> NumericFrame {
         let rotation =
             matrix_product(&transpose(&other.rotation), &matrix_product(&self.rotation, &next.rotation));
         let ahead = matrix_times_vector(&self.rotation, next.translation);

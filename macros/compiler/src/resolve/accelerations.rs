@@ -79,8 +79,8 @@ impl<'g> Scope<'_, 'g> {
         cx: &mut Diagnostics,
     ) -> Option<Vec<Expr<'g>>> {
         let quantities: Vec<Quantity> = symbols_in(values).into_iter().map(Quantity::from_symbol).collect();
-        let depends_on_quantity = |what: fn(&Quantity) -> bool| quantities.iter().any(what);
-        let is_state = |k: &usize| {
+        let uses_quantity_where = |what: fn(&Quantity) -> bool| quantities.iter().any(what);
+        let state_with_index = |k: &usize| {
             self.description
                 .states
                 .iter()
@@ -88,8 +88,9 @@ impl<'g> Scope<'_, 'g> {
                 .then(|| self.description.parameters.get(*k))
                 .flatten()
         };
-        let state =
-            quantities.iter().find_map(|q| if let Quantity::Parameter(k) = q { is_state(k) } else { None });
+        let state = quantities
+            .iter()
+            .find_map(|q| if let Quantity::Parameter(k) = q { state_with_index(k) } else { None });
         if let Some(state) = state {
             cx.report_error(place.clone(), format!("this depends on the state `{}`", state.text)).add_help(
                 "`rate` applies to expressions of coordinates, velocities and time: write the rate of the \
@@ -97,12 +98,12 @@ impl<'g> Scope<'_, 'g> {
             );
             return None;
         }
-        if depends_on_quantity(|q| matches!(q, Quantity::Input(_))) {
+        if uses_quantity_where(|q| matches!(q, Quantity::Input(_))) {
             cx.report_error(place.clone(), "this depends on inputs, whose rates are not known")
                 .add_help("a `State` that follows an input with a lag has a rate");
             return None;
         }
-        if depends_on_quantity(|q| {
+        if uses_quantity_where(|q| {
             matches!(q, Quantity::Acceleration(_) | Quantity::Reaction(_) | Quantity::ContactForce(_))
         }) {
             cx.report_error(

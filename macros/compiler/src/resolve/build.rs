@@ -1,7 +1,7 @@
 //! Assembly of the model: scope, tree, links, bodies and force elements.
 
 use super::accelerations::check_acceleration_forces;
-use super::builder::{Builder, MotionKnown};
+use super::builder::{Builder, ComputedMotionsProof};
 use super::chain::report_joint_argument_errors;
 use super::closed_form::find_closed_form_loops;
 use super::drawing::mechanism_drawing_pieces;
@@ -253,7 +253,7 @@ impl<'a, 'g> Builder<'a, 'g> {
         let mut numbering =
             CoordinateNumbering::number_description_coordinates(d, (&closing, &self.solved_loops), cx);
         if let Some(release) = &self.release {
-            self.scope.kinematics.first_released = Some(numbering.next_coordinate());
+            self.scope.kinematics.first_released = Some(numbering.next_coordinate_indices());
             numbering.add_released_coordinates(d, release.joints);
         }
         self.model.configuration = numbering.configuration;
@@ -271,8 +271,8 @@ impl<'a, 'g> Builder<'a, 'g> {
     }
 
     /// Adds all elements to the placed links.
-    fn add_all_elements(&mut self, closing: &[usize], moving: MotionKnown, cx: &mut Diagnostics) {
-        self.add_drives(moving, cx);
+    fn add_all_elements(&mut self, closing: &[usize], moving: ComputedMotionsProof, cx: &mut Diagnostics) {
+        self.add_file_force_elements(moving, cx);
         self.add_actions(moving, cx);
         self.model.limits = resolve_limits(&self.scope, &self.model, cx);
         let solved = self.record_loops_with_closed_form(cx);
@@ -333,7 +333,7 @@ fn resolve_gravity_vector<'g>(
     scope: &Scope<'_, 'g>,
     cx: &mut Diagnostics,
 ) -> Option<Vec3<'g>> {
-    if let Some(Value::Scalar(s)) = scope.resolve_value(e, &mut Diagnostics::unprinted_diagnostics())
+    if let Some(Value::Scalar(s)) = scope.resolve_value(e, &mut Diagnostics::silent_diagnostics())
         && !s.is_zero()
     {
         let (sign, size) = match e.literal_number() {

@@ -41,7 +41,7 @@ pub struct Builder<'a, 'g> {
 /// Proof that the motion of all links is known, so that expressions with velocities can be read. Created only
 /// by [`Builder::compute_link_motions`].
 #[derive(Clone, Copy)]
-pub struct MotionKnown(());
+pub struct ComputedMotionsProof(());
 
 impl<'g> Builder<'_, 'g> {
     /// Returns the loop whose closed-form solution determines a joint's coordinate.
@@ -94,7 +94,7 @@ impl<'g> Builder<'_, 'g> {
 
     /// Computes twists and accelerations of the links, for expressions with velocities. Returns `None` if an
     /// element has not been placed.
-    pub fn compute_link_motions(&mut self) -> Option<MotionKnown> {
+    pub fn compute_link_motions(&mut self) -> Option<ComputedMotionsProof> {
         let places = &self.scope.kinematics.places;
         if !self.jointed.iter().all(|name| places.contains_key(&name.text)) {
             return None;
@@ -106,6 +106,6 @@ impl<'g> Builder<'_, 'g> {
         let kinematics = &mut self.scope.kinematics;
         kinematics.twists = twists(&self.model, &kinematics.joints, &v);
         kinematics.accelerations = accelerations(&self.model, &kinematics.joints, &kinematics.twists, &v, &a);
-        Some(MotionKnown(()))
+        Some(ComputedMotionsProof(()))
     }
 }

@@ -29,8 +29,8 @@ impl<'g> Builder<'_, 'g> {
         let start = self.scope.placement_of_joint_parent(&joint.parent.body, cx);
         // A joint with an error gets default motions, so that its dependents are checked as well.
         let motions = motions.unwrap_or_else(|| joint::placeholder_joint_motions(self.scope.graph, joint));
-        let on_parent = on_parent.unwrap_or_else(|| self.scope.substitute_pose(false));
-        let on_child = on_child.unwrap_or_else(|| self.scope.substitute_pose(false));
+        let on_parent = on_parent.unwrap_or_else(|| self.scope.placeholder_pose(false));
+        let on_child = on_child.unwrap_or_else(|| self.scope.placeholder_pose(false));
         if let Some((link, pose)) = start {
             let frame = pose.compose_with(&on_parent);
             self.record_joint_for_reactions(j, link, &frame.rotation);
@@ -38,7 +38,7 @@ impl<'g> Builder<'_, 'g> {
             let (link, pose) = match self.loop_that_solves_joint(j) {
                 Some(solved) => {
                     let solved = pose_across_solved_joint(&self.scope, solved, j, cx)
-                        .unwrap_or_else(|| self.scope.substitute_pose(true));
+                        .unwrap_or_else(|| self.scope.placeholder_pose(true));
                     self.add_link_if_moving(link, frame.compose_with(&solved))
                 }
                 None => self.add_links_of_motions(j, &motions, link, frame),

@@ -102,7 +102,7 @@ fn nonholonomic_rows<'g>(
         let place = &constraint.value.place;
         let gradient = velocity_gradient(rate);
         let coefficients: Vec<Expr<'g>> = gradient.iter().map(|(_, c)| *c).collect();
-        let depends_on_quantity = |e: &[Expr<'g>], f: fn(Quantity) -> bool| {
+        let uses_quantity_where = |e: &[Expr<'g>], f: fn(Quantity) -> bool| {
             symbols_in(e).into_iter().any(|s| f(Quantity::from_symbol(s)))
         };
         if gradient.is_empty() {
@@ -110,12 +110,12 @@ fn nonholonomic_rows<'g>(
                 .add_help("a constraint on coordinates is a `Holonomic` one");
             return None;
         }
-        if depends_on_quantity(&[rate], |q| matches!(q, Quantity::Input(_))) {
+        if uses_quantity_where(&[rate], |q| matches!(q, Quantity::Input(_))) {
             cx.report_error(place.clone(), "a constraint contains no input")
                 .add_help("a prescribed motion is an expression of time `t`");
             return None;
         }
-        let linear = match depends_on_quantity(&coefficients, |q| matches!(q, Quantity::Velocity(_))) {
+        let linear = match uses_quantity_where(&coefficients, |q| matches!(q, Quantity::Velocity(_))) {
             true => remove_cancelling_velocities(rate, &gradient),
             false => Some(rate),
         };

@@ -135,7 +135,7 @@ impl<'g> Scope<'_, 'g> {
         along: &syntax::Expr,
         cx: &mut Diagnostics,
     ) -> Option<([Vec3<'g>; 3], Option<LinkId>)> {
-        let c = self.named_coordinate(text, along, cx)?;
+        let c = self.curve_coordinate(text, along, cx)?;
         let symbol = Quantity::Configuration(c.q.0).symbol();
         let terms = vector_terms_by_link(self.resolve_vector(curve, cx)?);
         let kinematics = &self.kinematics;
@@ -170,7 +170,7 @@ impl<'g> Scope<'_, 'g> {
     }
 
     /// Returns the coordinate with this name as the parameter of a curve.
-    fn named_coordinate(&self, text: &str, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Coordinate> {
+    fn curve_coordinate(&self, text: &str, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Coordinate> {
         let name = e.short_source_text();
         let kinematics = &self.kinematics;
         if let Some((_, c, _)) = kinematics.coordinates.iter().find(|(known, ..)| *known == name) {

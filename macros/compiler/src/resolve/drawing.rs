@@ -13,7 +13,7 @@ use crate::mechanism::drawing::{
 };
 use crate::mechanism::{InputEffect, LinkId, Model, Piece, PieceShape, Pose, Quantity, ShownObjectKind};
 use crate::syntax::{
-    self, Action, BinaryOp, Callee, Endpoint, ExprKind, FileForceLaw, GROUND, Shape, Target, Visual,
+    self, Action, BinaryOp, Callee, Endpoint, ExprKind, FileForceLaw, GROUND, Shape, Target, VisualShape,
 };
 use std::collections::BTreeSet;
 
@@ -78,7 +78,7 @@ impl<'g> DrawnElements<'_, '_, 'g> {
 
     /// Returns the link and the pose of the end of a joint.
     fn anchor_of_joint_end(&self, end: &Endpoint) -> Option<PoseInFrame<'g>> {
-        let mut silent = Diagnostics::unprinted_diagnostics();
+        let mut silent = Diagnostics::silent_diagnostics();
         let on_body = self.scope.frame_of_endpoint(end, &mut silent)?;
         if end.body.text == GROUND {
             return Some((None, on_body));
@@ -95,7 +95,7 @@ impl<'g> DrawnElements<'_, '_, 'g> {
     /// read.
     fn add_visual_pieces(&self, pieces: &mut Vec<Piece<'g>>) -> BTreeSet<String> {
         let g = self.scope.graph;
-        for Visual { on, shape, mesh } in &self.scope.description.visuals {
+        for VisualShape { on, shape, mesh } in &self.scope.description.visuals {
             let Some((frame, pose)) = self.anchor_of_joint_end(on) else { continue };
             let z = pose.rotation.vector_in_parent_axes(Vec3::coordinate_axis(g, 2));
             let number_expression = |x: f64| g.num(x);
@@ -201,7 +201,7 @@ impl<'g> DrawnElements<'_, '_, 'g> {
         com: Vec3<'g>,
         found: &mut Vec<(PieceShape, Vec<Expr<'g>>)>,
     ) -> bool {
-        let mut silent = Diagnostics::unprinted_diagnostics();
+        let mut silent = Diagnostics::silent_diagnostics();
         match &e.kind {
             ExprKind::Binary(BinaryOp::Add, a, b, _) => {
                 self.collect_solids(a, orientation, com, found)
@@ -293,7 +293,7 @@ impl<'g> DrawnElements<'_, '_, 'g> {
             self.scope.resolve_unit_vector(
                 axes.first()?,
                 joint.normalise_axis,
-                &mut Diagnostics::unprinted_diagnostics(),
+                &mut Diagnostics::silent_diagnostics(),
             )
         };
         Some((kind, axes.map_or(Some(None), |axes| unit_axis(axes).map(Some))?))
@@ -326,7 +326,7 @@ impl<'g> DrawnElements<'_, '_, 'g> {
     ) {
         let found = match &action.on {
             Target::Between(a, b) => {
-                let mut silent = Diagnostics::unprinted_diagnostics();
+                let mut silent = Diagnostics::silent_diagnostics();
                 let mut anchor_of_placement = |e| {
                     self.scope
                         .resolve_placement(e, &mut silent)

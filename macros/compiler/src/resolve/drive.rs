@@ -1,7 +1,7 @@
 //! Force elements and inputs of a file: on a weighted sum of coordinates, on a length, or at a point of a
 //! body.
 
-use super::element_forces::Forces;
+use super::element_forces::ElementForces;
 use super::forces::{
     SpringLaw, dry_friction, inertance_force, load_of_input, load_split_by_acceleration, report_unused_input,
     spring_force_of_law,
@@ -40,7 +40,7 @@ pub fn weighted_coordinates(
 
 /// Returns the quantities of an element to which expressions of the file refer. `input` is the index in `u`
 /// of an element that is an input.
-pub fn drive_quantities<'g>(
+pub fn file_element_quantities<'g>(
     scope: &Scope<'_, 'g>,
     drive: &FileForceElement,
     (input, terms): (usize, &[Coordinate]),
@@ -75,27 +75,27 @@ fn length_or_wrench_of_drive<'g>(
 
 /// Returns the forces of an element; `None` without an effect. `input` is the index in `u` of an element that
 /// is an input.
-pub fn resolve_drive_forces<'g>(
+pub fn resolve_file_element_forces<'g>(
     scope: &Scope<'_, 'g>,
     drive: &FileForceElement,
     (input, terms): (usize, &[Coordinate]),
     cx: &mut Diagnostics,
-) -> Option<Forces<'g>> {
+) -> Option<ElementForces<'g>> {
     let (place, g) = (&drive.name.place, scope.graph);
     let on = if let [on] = terms { Some(*on) } else { None };
     // The ratio of the coordinate is the weight.
     match (on, &drive.law) {
         (Some(on), &FileForceLaw::Spring { stiffness, free }) => {
             let springs = vec![Spring { on, stiffness: g.num(stiffness), free: g.num(free) }];
-            return Some(Forces { springs, ..Forces::default() });
+            return Some(ElementForces { springs, ..ElementForces::default() });
         }
         (Some(on), &FileForceLaw::Damper(damping)) => {
             let dashpots = vec![Dashpot { on, damping: g.num(damping) }];
-            return Some(Forces { dashpots, ..Forces::default() });
+            return Some(ElementForces { dashpots, ..ElementForces::default() });
         }
         (Some(on), &FileForceLaw::Friction(force)) => {
             let frictions = vec![CoulombFriction { on, friction: g.num(force) }];
-            return Some(Forces { frictions, ..Forces::default() });
+            return Some(ElementForces { frictions, ..ElementForces::default() });
         }
         _ => {}
     }
@@ -122,17 +122,17 @@ pub fn resolve_drive_forces<'g>(
             let excess = if low == high { stretch.value - g.num(low) } else { short + long };
             let [first, second, third] = stiffness.map(|k| g.num(k));
             let cubic = second * (1.0 / 3.0) + third * 0.25 * excess;
-            Some(Forces::forces_of_potentials([excess.square() * (first * 0.5 + cubic * excess)]))
+            Some(ElementForces::forces_of_potentials([excess.square() * (first * 0.5 + cubic * excess)]))
         }
         FileForceLaw::PolynomialDamper(damping) => {
             let [first, second, third] = damping.map(|c| g.num(c));
             let speed = stretch.rate.apply_function(Function::Abs);
             let factor = first + (second + third * speed) * speed;
-            Some(Forces::resisting_force(stretch.rate, factor * stretch.rate))
+            Some(ElementForces::resisting_force(stretch.rate, factor * stretch.rate))
         }
         FileForceLaw::Damper(damping) => {
             let damping = scope.resolve_scalar(&syntax_number(damping), cx)?;
-            Some(Forces::resisting_force(stretch.rate, damping * stretch.rate))
+            Some(ElementForces::resisting_force(stretch.rate, damping * stretch.rate))
         }
         FileForceLaw::Friction(force) => dry_friction(
             scope,

@@ -7,7 +7,7 @@ use crate::mechanism::{
 
 /// Forces of a force element, which the builder adds to those of the other elements.
 #[derive(Default)]
-pub struct Forces<'g> {
+pub struct ElementForces<'g> {
     /// Springs of constant stiffness that act on one coordinate each.
     pub springs: Vec<Spring<'g>>,
     /// Linear dashpots that act on coordinates.
@@ -28,15 +28,18 @@ pub struct Forces<'g> {
     pub input: Option<InputEffect<'g>>,
 }
 
-impl<'g> Forces<'g> {
+impl<'g> ElementForces<'g> {
     /// Returns the forces that derive from potential energies.
-    pub fn forces_of_potentials(energies: impl IntoIterator<Item = Expr<'g>>) -> Forces<'g> {
-        Forces { potentials: energies.into_iter().collect(), ..Forces::default() }
+    pub fn forces_of_potentials(energies: impl IntoIterator<Item = Expr<'g>>) -> ElementForces<'g> {
+        ElementForces { potentials: energies.into_iter().collect(), ..ElementForces::default() }
     }
 
     /// Returns a force that opposes a rate and dissipates energy.
-    pub fn resisting_force(rate: Expr<'g>, force: Expr<'g>) -> Forces<'g> {
-        Forces { loads: vec![Load { rate, force: -force, dissipative: true }], ..Forces::default() }
+    pub fn resisting_force(rate: Expr<'g>, force: Expr<'g>) -> ElementForces<'g> {
+        ElementForces {
+            loads: vec![Load { rate, force: -force, dissipative: true }],
+            ..ElementForces::default()
+        }
     }
 
     /// Whether there are no forces and no inputs.

@@ -49,7 +49,7 @@ impl<'g> Scope<'_, 'g> {
     }
 
     /// Returns a substitute pose for an element with an error. Its generic values avoid follow-up errors.
-    pub fn substitute_pose(&self, moves: bool) -> Pose<'g> {
+    pub fn placeholder_pose(&self, moves: bool) -> Pose<'g> {
         let g = self.graph;
         let mut translation = Vec3::vector_from_constants(g, [0.731, 0.417, 0.593]);
         if moves {

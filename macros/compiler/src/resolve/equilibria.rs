@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 
 /// Variable whose value at the equilibrium is declared, by its index.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Variable {
+enum EquilibriumVariable {
     Coordinate(usize),
     Input(usize),
     State(usize),
@@ -73,9 +73,9 @@ fn resolve_equilibrium<'g>(
         }
         let Some(value) = value_at_equilibrium(scope, model, variable, value, cx) else { continue };
         match variable {
-            Variable::Coordinate(k) => found.configuration[k] = value,
-            Variable::Input(k) => found.inputs[k] = value,
-            Variable::State(k) => found.states[k].value = value,
+            EquilibriumVariable::Coordinate(k) => found.configuration[k] = value,
+            EquilibriumVariable::Input(k) => found.inputs[k] = value,
+            EquilibriumVariable::State(k) => found.states[k].value = value,
         }
     }
     (cx.len() == before).then_some(found)
@@ -106,13 +106,13 @@ fn first_order_states_at_zero<'g>(
 fn value_at_equilibrium<'g>(
     scope: &Scope<'_, 'g>,
     model: &Model<'g>,
-    variable: Variable,
+    variable: EquilibriumVariable,
     value: &Expr,
     cx: &mut Diagnostics,
 ) -> Option<Value<'g>> {
     let name = match variable {
-        Variable::Coordinate(k) => model.configuration.get(k)?,
-        Variable::Input(_) | Variable::State(_) => "",
+        EquilibriumVariable::Coordinate(k) => model.configuration.get(k)?,
+        EquilibriumVariable::Input(_) | EquilibriumVariable::State(_) => "",
     };
     let coordinates = &scope.kinematics.coordinates;
     let angle = coordinates.iter().any(|(known, _, angle)| known == name && *angle);
@@ -128,13 +128,20 @@ fn resolve_variable<'g>(
     model: &Model<'g>,
     place: &Expr,
     cx: &mut Diagnostics,
-) -> Option<Variable> {
+) -> Option<EquilibriumVariable> {
     let text = place.short_source_text();
     let coordinate = model.configuration.iter().position(|name| *name == text);
-    let find_input = || model.inputs.iter().position(|(name, _)| *name == text).map(Variable::Input);
-    let state =
-        || scope.description.states.iter().position(|(name, _)| name.text == text).map(Variable::State);
-    let found = coordinate.map(Variable::Coordinate).or_else(find_input).or_else(state);
+    let find_input =
+        || model.inputs.iter().position(|(name, _)| *name == text).map(EquilibriumVariable::Input);
+    let state = || {
+        scope
+            .description
+            .states
+            .iter()
+            .position(|(name, _)| name.text == text)
+            .map(EquilibriumVariable::State)
+    };
+    let found = coordinate.map(EquilibriumVariable::Coordinate).or_else(find_input).or_else(state);
     if found.is_none() {
         report_place_without_variable(scope, model, place, &text, cx);
     }

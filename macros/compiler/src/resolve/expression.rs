@@ -192,9 +192,9 @@ impl<'a, 'g> Scope<'a, 'g> {
                 return self.resolve_matrix_operation(op, left, right, e, cx);
             }
             (BinaryOp::Div, Scalar(a), Scalar(b)) => Scalar(a / b),
-            (BinaryOp::Add, Vector(a), Vector(b)) => Vector(sum_by_axes(a, b)),
+            (BinaryOp::Add, Vector(a), Vector(b)) => Vector(add_vectors_by_axes(a, b)),
             (BinaryOp::Sub, Vector(a), Vector(b)) => {
-                Vector(sum_by_axes(a, b.into_iter().map(|(axes, v)| (axes, -v)).collect()))
+                Vector(add_vectors_by_axes(a, b.into_iter().map(|(axes, v)| (axes, -v)).collect()))
             }
             (BinaryOp::Mul, Scalar(s), Vector(v)) | (BinaryOp::Mul, Vector(v), Scalar(s)) => {
                 Vector(v.into_iter().map(|(a, v)| (a, v * s)).collect())
@@ -245,7 +245,10 @@ fn require_finite<'g>(value: Value<'g>, e: &syntax::Expr, cx: &mut Diagnostics) 
 }
 
 /// Returns the sum of two vectors whose components are grouped by frame of reference.
-pub fn sum_by_axes<'g>(mut a: Vec<(Axes, Vec3<'g>)>, b: Vec<(Axes, Vec3<'g>)>) -> Vec<(Axes, Vec3<'g>)> {
+pub fn add_vectors_by_axes<'g>(
+    mut a: Vec<(Axes, Vec3<'g>)>,
+    b: Vec<(Axes, Vec3<'g>)>,
+) -> Vec<(Axes, Vec3<'g>)> {
     for (axes, v) in b {
         match a.iter_mut().find(|(known, _)| *known == axes) {
             Some((_, sum)) => *sum += v,

@@ -2,7 +2,7 @@
 //! are forward, right and down; ground axes are north, east and down.
 
 use super::call::Call;
-use super::expression::sum_by_axes;
+use super::expression::add_vectors_by_axes;
 use super::functions::hypotenuse;
 use super::scope::{Scope, Value};
 use crate::diag::Diagnostics;
@@ -127,7 +127,7 @@ impl<'g> Scope<'_, 'g> {
         let mut total = Vec::new();
         for (k, part) in in_body.into_iter().enumerate() {
             let along = self.resolve_vector(&body_axis_expression(body, k), cx)?;
-            total = sum_by_axes(total, along.into_iter().map(|(axes, v)| (axes, v * part)).collect());
+            total = add_vectors_by_axes(total, along.into_iter().map(|(axes, v)| (axes, v * part)).collect());
         }
         Some(Value::Vector(total))
     }

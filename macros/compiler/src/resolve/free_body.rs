@@ -5,7 +5,7 @@
 //! fixed. The wrenches of joints are their reactions, including the motors, springs and dashpots on their own
 //! coordinates.
 
-use super::element_forces::Forces;
+use super::element_forces::ElementForces;
 use super::holders::{MovingPlacement, connections_of_body, name_of_connection};
 use super::output::output_axes;
 use super::power::power_of_input;
@@ -54,7 +54,7 @@ type DiagramAction<'g> = (String, ActionOrigin, Option<VectorTerms<'g>>, ActionW
 pub fn forces_on_released_joints<'g>(
     scope: &Scope<'_, 'g>,
     m: &Model<'g>,
-    (release, applied): (&ReleasedJoints<'_, 'g>, &Forces<'g>),
+    (release, applied): (&ReleasedJoints<'_, 'g>, &ElementForces<'g>),
     name: &str,
 ) -> Vec<Expr<'g>> {
     let open = RELEASED * release.joints.len();
@@ -305,7 +305,7 @@ impl<'g> FreedBody<'_, '_, 'g> {
     /// Returns the point of the body at which an element acts, if it acts at a single point.
     fn action_point_of_element(&self, name: &str) -> Option<VectorTerms<'g>> {
         let action = self.scope.description.actions.iter().find(|action| action.name.text == name)?;
-        let mut unread = Diagnostics::unprinted_diagnostics();
+        let mut unread = Diagnostics::silent_diagnostics();
         let mut position_if_on_body = |e: &syntax::Expr| {
             let placed = self.scope.placement_of_moving_point(e, &mut unread)?;
             (placed.link == self.link).then(|| self.position_of_placed(&placed))
@@ -426,7 +426,7 @@ impl<'g> FreedBody<'_, '_, 'g> {
 
     /// Returns the position of the end of a joint that belongs to the body.
     fn joint_end_position(&self, ends: [&Endpoint; 2]) -> Option<VectorTerms<'g>> {
-        let mut unread = Diagnostics::unprinted_diagnostics();
+        let mut unread = Diagnostics::silent_diagnostics();
         ends.into_iter().find_map(|end| {
             let (link, pose) = self.scope.placement_of_joint_parent(&end.body, &mut unread)?;
             let on_body = self.scope.frame_of_endpoint(end, &mut unread)?;

@@ -194,7 +194,7 @@ impl<'g> Scope<'_, 'g> {
         cx: &mut Diagnostics,
     ) -> bool {
         for (Argument { name, kind }, argument) in solid.row().arguments.iter().zip(arguments) {
-            let mut silent = Diagnostics::unprinted_diagnostics();
+            let mut silent = Diagnostics::silent_diagnostics();
             let found = match (self.resolve_value(argument, &mut silent), kind.is_direction()) {
                 (Some(Value::Vector(_)), false) => "a vector",
                 (Some(Value::Scalar(s)), true) if !s.is_zero() => "a scalar",

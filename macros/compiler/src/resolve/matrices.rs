@@ -88,7 +88,7 @@ impl<'g> Scope<'_, 'g> {
     }
 
     /// Resolves a call of `identity()`.
-    pub fn identity(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+    pub fn resolve_identity(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [] = self.arguments_of_matrix_function(call, cx)?;
         Some(Value::Matrix(ResolvedMatrix { link: None, entries: Mat3::identity(self.graph) }))
     }
@@ -172,7 +172,7 @@ impl<'g> Scope<'_, 'g> {
     }
 
     /// Resolves `inertia(body / point)`: the physical inertia matrix of bodies about a point.
-    pub fn inertia_matrix(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+    pub fn resolve_inertia_matrix(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [operands] = self.arguments_of_matrix_function(call, cx)?;
         let [bodies_written, about] = call.take_operands(operands, cx)?;
         if !self.check_allowed_quantity(AllowedQuantities::Placement, "`inertia(…)`", call.place, cx) {

@@ -1,6 +1,6 @@
 //! Momentum, kinetic energy, inertia and centre of mass of bodies and particles: `momentum(body)`,
 //! `angular_momentum((first, second) / point)`, `kinetic_energy(body)`,
-//! `resolve_moment_of_inertia(body / point, direction)`, `center_of_mass((first, second) / point)`.
+//! `moment_of_inertia(body / point, direction)`, `center_of_mass((first, second) / point)`.
 
 use super::call::{Call, flatten_slashes};
 use super::quantities::vector_value_from_terms;
@@ -82,7 +82,7 @@ impl<'g> Scope<'_, 'g> {
 
     /// Resolves `center_of_mass((first, second) / point)`: the vector from a point to the centre of mass of
     /// bodies.
-    pub fn center_of_mass(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+    pub fn resolve_center_of_mass(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let Ok([bodies_written, from]) = <[_; 2]>::try_from(call.slash_operands()) else {
             return call.report_wrong_arguments(cx);
         };
@@ -211,7 +211,7 @@ impl<'g> Scope<'_, 'g> {
                 None
             }
             (None, _) => {
-                if self.is_first_report(name, cx) {
+                if self.record_first_report(name, cx) {
                     let known: Vec<&str> = kinematics.masses.keys().map(String::as_str).collect();
                     let error = cx.report_error(e.place.clone(), format!("unknown body `{name}`"));
                     words::suggest_meaning_or_known_word(error, words::BODIES, name, &known);

@@ -30,7 +30,7 @@ impl<'g> Scope<'_, 'g> {
     }
 
     /// Whether an unknown name has not been reported yet; records it as reported.
-    pub fn is_first_report(&self, name: &str, cx: &Diagnostics) -> bool {
+    pub fn record_first_report(&self, name: &str, cx: &Diagnostics) -> bool {
         !cx.will_print_errors() || self.records.borrow_mut().reported_names.insert(name.to_string())
     }
 
@@ -41,7 +41,7 @@ impl<'g> Scope<'_, 'g> {
         e: &syntax::Expr,
         cx: &mut Diagnostics,
     ) -> Option<Value<'g>> {
-        if let Some(value) = self.kinematics.drive_quantities.get(name) {
+        if let Some(value) = self.kinematics.file_element_quantities.get(name) {
             return Some(Value::Scalar(*value));
         }
         // Expressions of a file refer to its joints even if the language has another meaning for the name.
@@ -99,7 +99,7 @@ impl<'g> Scope<'_, 'g> {
             if self.allowed_quantities() >= AllowedQuantities::Motion {
                 known.extend(self.description.inputs.iter().map(|i| i.text.as_str()));
             }
-            if !self.is_first_report(name, cx) {
+            if !self.record_first_report(name, cx) {
                 return None;
             }
             let rates: Vec<&str> = kinematics.coordinates.iter().map(|(name, ..)| name.as_str()).collect();
@@ -147,7 +147,7 @@ impl<'g> Scope<'_, 'g> {
             }
             let known = self.bodies.iter().map(String::as_str).chain([GROUND]);
             let known: Vec<&str> = known.collect();
-            if !self.is_first_report(body, cx) {
+            if !self.record_first_report(body, cx) {
                 return None;
             }
             let error = cx.report_error(inner.place.clone(), format!("unknown body `{body}`"));

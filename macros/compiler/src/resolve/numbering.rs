@@ -39,7 +39,7 @@ impl CoordinateNumbering {
         let is_solved_by_loop = |j: usize| solved_loops.iter().any(|solved| solved.sides.contains(&j));
         for (j, joint) in description.joints.iter().enumerate() {
             all.assign_free_coordinate_indices(description, j);
-            let (q, v) = all.next_coordinate();
+            let (q, v) = all.next_coordinate_indices();
             let mut plain = Vec::new();
             if joint.mimic.is_none() && !closing[j] && !is_solved_by_loop(j) {
                 all.charts.extend(charts_of_joint(joint.kind, (q, v), joint.along.len()));
@@ -93,14 +93,14 @@ impl CoordinateNumbering {
     }
 
     /// Returns the indices in `q` and `v` of the next coordinate that is added.
-    pub fn next_coordinate(&self) -> (InQ, InV) {
+    pub fn next_coordinate_indices(&self) -> (InQ, InV) {
         (InQ(self.configuration.len()), InV(self.velocities.len()))
     }
 
     /// Numbers the free coordinates that are declared after the given number of joints.
     fn assign_free_coordinate_indices(&mut self, description: &Description, joints: usize) {
         for free in description.coordinates.iter().filter(|c| c.joints_before == joints) {
-            let (q, v) = self.next_coordinate();
+            let (q, v) = self.next_coordinate_indices();
             self.configuration.push(free.name.text.clone());
             self.velocities.push((free.name.text.clone(), free.name.place.clone()));
             self.charts.push(Chart::Plain(q, v));
@@ -113,7 +113,7 @@ impl CoordinateNumbering {
         for j in joints {
             let Some(name) = holders::name_of_connection(description, *j) else { continue };
             for k in 0..RELEASED {
-                let (q, v) = self.next_coordinate();
+                let (q, v) = self.next_coordinate_indices();
                 self.charts.push(Chart::Plain(q, v));
                 self.configuration.push(format!("{}.open{k}", name.text));
                 self.velocities.push((format!("{}.open{k}", name.text), name.place.clone()));

@@ -1,13 +1,13 @@
 //! Additions to the model: the parts that resolved elements return.
 
-use super::builder::{Builder, MotionKnown};
+use super::builder::{Builder, ComputedMotionsProof};
 use super::chain::report_joint_argument_errors;
 use super::closed_form::joints_solved_in_closed_form;
 use super::closure::{loop_closure_rows, planar_loop_rows};
 use super::constraint::{report_constraint_errors, resolve_constraint};
 use super::contact::{resolve_contact, resolve_stops};
-use super::drive::{drive_quantities, resolve_drive_forces, weighted_coordinates};
-use super::element_forces::Forces;
+use super::drive::{file_element_quantities, resolve_file_element_forces, weighted_coordinates};
+use super::element_forces::ElementForces;
 use super::forces::{forces_of_element, report_unused_input};
 use super::free_body::{forces_on_released_joints, resolve_free_body_diagram};
 use super::freedom::remove_redundancy_and_check_mobility;
@@ -76,15 +76,15 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// Adds all force elements and inputs of a file.
-    pub fn add_drives(&mut self, _: MotionKnown, cx: &mut Diagnostics) {
+    pub fn add_file_force_elements(&mut self, _: ComputedMotionsProof, cx: &mut Diagnostics) {
         for drive in &self.scope.description.drives {
             let terms = weighted_coordinates(&self.scope, drive, cx);
             let on = (self.model.inputs.len(), terms.as_slice());
-            for (quantity, value) in drive_quantities(&self.scope, drive, on, cx) {
+            for (quantity, value) in file_element_quantities(&self.scope, drive, on, cx) {
                 let name = quantity.file_force_quantity_name(&drive.name.text);
-                self.scope.kinematics.drive_quantities.insert(name, value);
+                self.scope.kinematics.file_element_quantities.insert(name, value);
             }
-            if let Some(forces) = resolve_drive_forces(&self.scope, drive, on, cx) {
+            if let Some(forces) = resolve_file_element_forces(&self.scope, drive, on, cx) {
                 forces.add_forces_to_model(&mut self.model);
             }
             if let FileForceLaw::Input(unit) = drive.law {
@@ -94,7 +94,7 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// Adds the forces of all force elements and inputs to the model.
-    pub fn add_actions(&mut self, _: MotionKnown, cx: &mut Diagnostics) {
+    pub fn add_actions(&mut self, _: ComputedMotionsProof, cx: &mut Diagnostics) {
         // Inputs without an element of their own appear in expressions. The others are filled in by their
         // elements.
         for input in &self.scope.description.inputs {
@@ -122,7 +122,7 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// Adds the forces of an element, and records them for free-body diagrams.
-    fn add_element_forces(&mut self, name: &str, forces: Forces<'g>) {
+    fn add_element_forces(&mut self, name: &str, forces: ElementForces<'g>) {
         if let Some(release) = &mut self.release
             && self.scope.description.outputs.iter().any(|output| output.rank == Rank::FreeBody)
         {
@@ -142,7 +142,7 @@ impl<'g> Builder<'_, 'g> {
     pub fn add_constraints(
         &mut self,
         closing: &[usize],
-        _: (MotionKnown, LoopsSolved),
+        _: (ComputedMotionsProof, LoopsSolved),
         cx: &mut Diagnostics,
     ) -> ConstraintsAdded {
         let d = self.scope.description;
@@ -233,7 +233,7 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// Adds all contacts to the model: declared contacts in their order, then the stops of limits.
-    pub fn add_contacts(&mut self, _: MotionKnown, cx: &mut Diagnostics) {
+    pub fn add_contacts(&mut self, _: ComputedMotionsProof, cx: &mut Diagnostics) {
         let d = self.scope.description;
         let surfaces_of_pairs = std::mem::take(&mut self.surfaces);
         for contact in &d.contacts {

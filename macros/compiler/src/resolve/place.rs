@@ -175,7 +175,7 @@ impl<'a, 'g> Builder<'a, 'g> {
     fn place_at_substitute_poses(&mut self, waiting: &[UnplacedElement], order: &PlacementOrder) {
         for item in waiting {
             let name = self.name_of_element_to_place(*item, order);
-            let (link, pose) = self.add_link_if_moving(None, self.scope.substitute_pose(true));
+            let (link, pose) = self.add_link_if_moving(None, self.scope.placeholder_pose(true));
             let kind = match item {
                 UnplacedElement::Joint(_) | UnplacedElement::Body(_) => PlacedElementKind::Body,
                 UnplacedElement::Frame(_) => PlacedElementKind::Frame,
@@ -195,7 +195,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             UnplacedElement::Frame(k) => {
                 let (link, pose) = self
                     .frame_axes_at_start_origin(k, cx)
-                    .unwrap_or_else(|| (None, self.scope.substitute_pose(true)));
+                    .unwrap_or_else(|| (None, self.scope.placeholder_pose(true)));
                 let (start, (link, pose)) = (link, self.add_link_if_moving(link, pose));
                 self.frame_links.extend(link.filter(|_| link != start));
                 self.register_placement(&d.frames[k].name.text, link, pose, PlacedElementKind::Frame);
@@ -210,7 +210,7 @@ impl<'a, 'g> Builder<'a, 'g> {
                     Some(at) => self.placement_at_offset(frame, at, false, cx),
                     None => Some((frame.link, frame.pose)),
                 });
-                let (link, pose) = place.unwrap_or_else(|| (None, self.scope.substitute_pose(true)));
+                let (link, pose) = place.unwrap_or_else(|| (None, self.scope.placeholder_pose(true)));
                 let (link, pose) = self.add_link_if_moving(link, pose);
                 self.register_placement(&p.name.text, link, pose, PlacedElementKind::Point);
             }
@@ -221,7 +221,7 @@ impl<'a, 'g> Builder<'a, 'g> {
                 let free = !are_particle_axes_used(d, &p.name.text);
                 let (link, pose) = self
                     .placement_of_position(at, free, cx)
-                    .unwrap_or_else(|| (None, self.scope.substitute_pose(true)));
+                    .unwrap_or_else(|| (None, self.scope.placeholder_pose(true)));
                 let (link, pose) =
                     self.add_links_of_placed_element(holders::particle_connection_index(d, k), link, pose);
                 self.register_placement(&p.name.text, link, pose, PlacedElementKind::Point);
@@ -287,7 +287,7 @@ impl<'a, 'g> Builder<'a, 'g> {
                 None
             }
             None => {
-                if !self.scope.is_first_report(name, cx) {
+                if !self.scope.record_first_report(name, cx) {
                     return None;
                 }
                 let known: Vec<&str> = kinematics.places.keys().map(String::as_str).chain([GROUND]).collect();
@@ -321,7 +321,7 @@ impl<'a, 'g> Builder<'a, 'g> {
                     self.rotation_between_links(link, axes.link).compose_with(&axes.pose.rotation);
                 (link, pose)
             }
-            _ => (None, self.scope.substitute_pose(true)),
+            _ => (None, self.scope.placeholder_pose(true)),
         };
         let (link, pose) = self.add_links_of_placed_element(
             holders::body_connection_index(self.scope.description, k),

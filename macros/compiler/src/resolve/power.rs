@@ -1,7 +1,7 @@
 //! Power of single force elements, for outputs with `power(spring)`.
 
 use super::call::Call;
-use super::element_forces::Forces;
+use super::element_forces::ElementForces;
 use super::scope::{AllowedQuantities, ElementPower, Scope, Value};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Function, Vec3};
@@ -47,7 +47,7 @@ pub fn slipping_powers<'g>(model: &Model<'g>) -> Vec<(String, ElementPower<'g>)>
 pub fn power_of_element<'g>(
     scope: &Scope<'_, 'g>,
     model: &Model<'g>,
-    forces: &Forces<'g>,
+    forces: &ElementForces<'g>,
     element: &str,
 ) -> ElementPower<'g> {
     let m = model;
@@ -149,7 +149,7 @@ impl<'g> Scope<'_, 'g> {
             }
             None => {
                 // An element with an error has no power; the error has been reported.
-                if !element_names().any(|action| action == name) && self.is_first_report(name, cx) {
+                if !element_names().any(|action| action == name) && self.record_first_report(name, cx) {
                     let error = cx.report_error(e.place.clone(), format!("unknown force element `{name}`"));
                     error.suggest_name(name, element_names());
                     if error.has_no_help() {

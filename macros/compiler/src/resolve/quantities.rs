@@ -77,7 +77,7 @@ impl<'g> Scope<'_, 'g> {
             if self.is_moving_expression(argument) {
                 return self.resolve_time_derivative(call.place, argument, cx).map(Value::Scalar);
             }
-            if matches!(argument.kind, ExprKind::Name(_)) && !self.is_first_report(&name, cx) {
+            if matches!(argument.kind, ExprKind::Name(_)) && !self.record_first_report(&name, cx) {
                 return None;
             }
             let known = kinematics.coordinates.iter().map(|(n, ..)| n.as_str());
@@ -165,7 +165,7 @@ impl<'g> Scope<'_, 'g> {
                 .add_help("name a body, a particle or a point");
             return;
         }
-        if !self.is_first_report(name, cx) {
+        if !self.record_first_report(name, cx) {
             return;
         }
         let kinematics = &self.kinematics;
@@ -216,7 +216,7 @@ impl<'g> Scope<'_, 'g> {
                 None
             }
             None => {
-                if !self.is_first_report(name, cx) {
+                if !self.record_first_report(name, cx) {
                     return None;
                 }
                 let kinematics = &self.kinematics;
@@ -281,7 +281,7 @@ impl<'g> Scope<'_, 'g> {
     }
 
     /// Resolves `omega(B / A)`, the angular velocity of B relative to A.
-    pub fn angular_velocity(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+    pub fn resolve_angular_velocity(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let frames: [_; 2] = self.operands_of_kinematic_quantity(call, AllowedQuantities::Motion, cx)?;
         let [b, a] = frames.map(|e| self.resolve_frame_link(e, cx));
         Some(vector_value_from_terms(self.kinematics.angular_velocity_in_frame(b?, a?, self.graph)))

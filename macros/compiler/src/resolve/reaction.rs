@@ -91,7 +91,7 @@ impl<'g> Scope<'_, 'g> {
             return None;
         }
         let Some((j, link, rotation)) = kinematics.transmissions.get(name) else {
-            if self.is_first_report(name, cx) {
+            if self.record_first_report(name, cx) {
                 let error =
                     cx.report_error(call.arguments[0].place.clone(), format!("unknown joint `{name}`"));
                 error.suggest_name(name, joint_names());

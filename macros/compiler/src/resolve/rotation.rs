@@ -20,13 +20,13 @@ impl<'g> Scope<'_, 'g> {
                 report_expected_rotation(step, cx);
                 return None;
             }
-            let next = self.rotation_step(step, cx);
+            let next = self.resolve_rotation_step(step, cx);
             whole = whole.zip(next).map(|(whole, next)| whole.compose_with(&next));
         }
         whole
     }
 
-    fn rotation_step(&self, step: &syntax::Expr, cx: &mut Diagnostics) -> Option<Rotation<'g>> {
+    fn resolve_rotation_step(&self, step: &syntax::Expr, cx: &mut Diagnostics) -> Option<Rotation<'g>> {
         match &step.kind {
             ExprKind::Call(Callee { id: Some(Callable::Rotation(id)), .. }, arguments) => {
                 match (id, id.index_of_axis(), arguments.as_slice()) {

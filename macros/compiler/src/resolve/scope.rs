@@ -203,7 +203,7 @@ pub struct PlacedElements<'g> {
     /// Power of each force element that an output uses.
     pub powers: BTreeMap<String, ElementPower<'g>>,
     /// Quantities of force elements of a file, by the names that the laws of these elements contain.
-    pub drive_quantities: BTreeMap<String, Expr<'g>>,
+    pub file_element_quantities: BTreeMap<String, Expr<'g>>,
     /// Accelerations of the links; set after all links are placed.
     pub accelerations: Vec<SpatialVector<'g>>,
     /// Mass, centre of mass and central inertia of bodies and particles.

@@ -138,7 +138,7 @@ fn resolve_joint_coordinate<'g>(
                 .add_help(format!("write `on = {joint}` and give a direction, or name a joint"));
             return None;
         }
-        if scope.is_first_report(joint, cx) {
+        if scope.record_first_report(joint, cx) {
             let known = scope.joint_names();
             let error = cx.report_error(inner.place.clone(), format!("unknown joint `{joint}`"));
             error.suggest_name(joint, known.iter().map(String::as_str));
@@ -181,7 +181,7 @@ fn report_invalid_target<'g>(scope: &Scope<'_, 'g>, name: &str, place: &Place, c
         let mut known = scope.joint_names();
         known.extend(scope.placeable_names().map(str::to_string));
         known.extend(scope.description.coordinates.iter().map(|c| c.name.text.clone()));
-        if !scope.is_first_report(name, cx) {
+        if !scope.record_first_report(name, cx) {
             return;
         }
         let error = cx.report_error(place.clone(), format!("unknown joint or body `{name}`"));

@@ -1,7 +1,7 @@
 //! Lengths and angles on which force elements act, and energies and dissipation functions given as
 //! expressions.
 
-use super::element_forces::Forces;
+use super::element_forces::ElementForces;
 use super::scope::{AllowedQuantities, Context, Scope};
 use crate::diag::Diagnostics;
 use crate::expr::eval::eval;
@@ -45,13 +45,17 @@ pub fn resolve_potential_energy<'g>(
     scope: &Scope<'_, 'g>,
     e: &syntax::Expr,
     cx: &mut Diagnostics,
-) -> Forces<'g> {
+) -> ElementForces<'g> {
     let context = Context::new(AllowedQuantities::Placement, Some((None, Pose::identity(scope.graph))));
-    Forces::forces_of_potentials(scope.call_in_context(context, |scope| scope.resolve_scalar(e, cx)))
+    ElementForces::forces_of_potentials(scope.call_in_context(context, |scope| scope.resolve_scalar(e, cx)))
 }
 
 /// Resolves a dissipation function given as an expression.
-pub fn resolve_dissipation<'g>(scope: &Scope<'_, 'g>, e: &syntax::Expr, cx: &mut Diagnostics) -> Forces<'g> {
+pub fn resolve_dissipation<'g>(
+    scope: &Scope<'_, 'g>,
+    e: &syntax::Expr,
+    cx: &mut Diagnostics,
+) -> ElementForces<'g> {
     let context = Context::new(AllowedQuantities::Motion, Some((None, Pose::identity(scope.graph))));
     let function = scope.call_in_context(context, |scope| scope.resolve_scalar(e, cx));
     // Zero is not an error: the bodies may be welded together.
@@ -61,7 +65,7 @@ pub fn resolve_dissipation<'g>(scope: &Scope<'_, 'g>, e: &syntax::Expr, cx: &mut
              rate(hinge)`",
         );
     }
-    Forces { dissipations: function.into_iter().collect(), ..Forces::default() }
+    ElementForces { dissipations: function.into_iter().collect(), ..ElementForces::default() }
 }
 
 /// Reports errors of definitions, also of those without uses.

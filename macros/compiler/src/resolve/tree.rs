@@ -197,7 +197,7 @@ fn report_unknown_body(name: &Name, jointed: &[&Name], scope: &Scope<'_, '_>, cx
         return;
     }
     let known: Vec<&str> = jointed.iter().map(|h| h.text.as_str()).chain([GROUND]).collect();
-    if !scope.is_first_report(&name.text, cx) {
+    if !scope.record_first_report(&name.text, cx) {
         return;
     }
     let error = cx.report_error(place, format!("unknown body `{}`", name.text));

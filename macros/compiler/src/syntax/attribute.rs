@@ -6,7 +6,7 @@ use super::lists::ElementListLengths;
 use super::mechanism::{GeneratedStruct, Mechanism};
 use super::options::read_mechanism_options;
 use super::parameter::type_name;
-use super::readable::FieldReadability;
+use super::readable::MechanismReadability;
 use super::request::RequestedFunctions;
 use super::separate::insert_missing_commas;
 use super::state::set_state_types;
@@ -20,7 +20,7 @@ use syn::{Fields, GenericParam, Ident, Item, ItemStruct};
 /// Parses `#[mechanism(arguments)] item`. Returns `None` if the item is not a valid struct; all errors are in
 /// `cx`.
 pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagnostics) -> Option<Mechanism> {
-    if !guard::check_argument_size(&arguments, cx) || !guard::report_oversized_item(&item, cx) {
+    if !guard::check_argument_size(&arguments, cx) || !guard::check_item_size(&item, cx) {
         return None;
     }
     let fields = declaration::fields_source_text(&item);
@@ -28,7 +28,7 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
     let before = cx.len();
     let mut lists = ElementListLengths::expand_lists(&mut item.fields, cx);
     let arguments = lists.rewrite_list_index(arguments, None, cx);
-    let mut reading = FieldReadability::default();
+    let mut reading = MechanismReadability::default();
     if cx.len() > before {
         reading.mark_mechanism_unreadable();
     }

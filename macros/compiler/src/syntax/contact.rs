@@ -2,7 +2,7 @@
 
 use super::arguments::Arguments;
 use super::keys::{ElementArgumentKeys, check_argument_relations};
-use super::{Collision, Contact, Description, Expr, ExprKind, GROUND, Name};
+use super::{CollisionShape, Contact, Description, Expr, ExprKind, GROUND, Name};
 use crate::diag::Diagnostics;
 use crate::language::{BodyOrInertiaMethod, Callable, OtherKind};
 
@@ -66,10 +66,10 @@ pub fn link_in_collision_expression(surface: &Expr) -> Option<Option<&Expr>> {
 
 /// Returns the indices of the shapes that `link.collision()`, `link.collision(2)` or `collision()` denotes;
 /// `None` for other surfaces.
-pub fn select_collisions(surface: &Expr, all: &[Collision]) -> Option<Vec<usize>> {
+pub fn collision_shape_indices(surface: &Expr, all: &[CollisionShape]) -> Option<Vec<usize>> {
     let link = link_in_collision_expression(surface)?.and_then(Expr::as_name);
     let is_shape_of_link =
-        |part: &Collision| link.map_or(part.on.body.text != GROUND, |name| part.on.body.text == name);
+        |part: &CollisionShape| link.map_or(part.on.body.text != GROUND, |name| part.on.body.text == name);
     let parts = (0..all.len()).filter(|k| is_shape_of_link(&all[*k]));
     let index = match &surface.kind {
         ExprKind::Method(_, _, arguments) => arguments.first().and_then(Expr::literal_number),

@@ -45,7 +45,7 @@ pub fn check_argument_size(tokens: &TokenStream, cx: &mut Diagnostics) -> bool {
 }
 
 /// Reports an item whose tokens are nested too deeply or are too many. Returns whether parsing may continue.
-pub fn report_oversized_item(tokens: &TokenStream, cx: &mut Diagnostics) -> bool {
+pub fn check_item_size(tokens: &TokenStream, cx: &mut Diagnostics) -> bool {
     check_token_limits(OpenBracket::bracket_around_stream(tokens, true), cx)
 }
 

@@ -2,9 +2,9 @@
 
 use super::declaration::doc_lines;
 use super::file_parameters::{FileField, FileParameters};
-use super::readable::FieldReadability;
+use super::readable::MechanismReadability;
 use super::request::RequestedFunctions;
-use super::{Base, Description, InertiaOption, Name};
+use super::{BaseAttachment, Description, InertiaOption, Name};
 use syn::{Attribute, Field, Ident, Visibility};
 
 /// Parsed struct with the attribute `#[mechanism]`.
@@ -18,7 +18,7 @@ pub struct Mechanism {
     /// Optional functions that are generated on request.
     pub requests: RequestedFunctions,
     /// Record of which fields could be read in spite of errors.
-    pub reading: FieldReadability,
+    pub reading: MechanismReadability,
 }
 
 /// Generated struct: the declared one without the fields that are elements.
@@ -184,7 +184,7 @@ pub struct FileOptions {
     /// Path of the robot file as written.
     pub path: Name,
     /// Option for the attachment of the root link.
-    pub base: Base,
+    pub base: BaseAttachment,
     /// Whether damping and friction of the file are included.
     pub honour_passive: bool,
     /// Whether mimic joints follow their leaders.
@@ -218,7 +218,7 @@ impl FileOptions {
         FileOptions {
             format,
             path,
-            base: Base::Fixed,
+            base: BaseAttachment::Fixed,
             honour_passive: true,
             follow_mimic: true,
             limits: LimitOption::Honour,

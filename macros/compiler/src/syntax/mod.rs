@@ -35,11 +35,12 @@ pub use crate::language::{
 };
 pub use attribute::parse_mechanism;
 pub use description::{
-    Action, Base, BinaryOp, Body, Callee, Collision, Constraint, ConstraintKind, Contact, Definition,
-    Description, Endpoint, Equilibrium, Expr, ExprKind, FileContact, FileContactKind, FileForceElement,
-    FileForceLaw, FileForceQuantity, FileForceTarget, Formulation, Frame, FreeCoordinate, InertiaOption,
-    Joint, LanguageWord, Limit, Member, Mesh, MeshVertices, MimicRelation, Name, Particle, Point, Rank,
-    ScalarType, Shape, Table, Target, Visual, Wrench, WrittenArguments, restitution_value_and_kind,
+    Action, BaseAttachment, BinaryOp, Body, Callee, CollisionShape, Constraint, ConstraintKind, Contact,
+    Definition, Description, Endpoint, Equilibrium, Expr, ExprKind, FileContact, FileContactKind,
+    FileForceElement, FileForceLaw, FileForceQuantity, FileForceTarget, Formulation, Frame, FreeCoordinate,
+    InertiaOption, Joint, LanguageWord, Limit, Member, Mesh, MeshVertices, MimicRelation, Name, Particle,
+    Point, Rank, ScalarType, Shape, Table, Target, VisualShape, Wrench, WrittenArguments,
+    restitution_value_and_kind,
 };
 pub use duplicate::struct_without_fields_if_duplicate;
 pub use mechanism::{

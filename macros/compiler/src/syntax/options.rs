@@ -7,7 +7,7 @@ use super::mechanism::{ContactOption, FileFormat, FileInputSource, FileOptions, 
 use super::parameter::unify_scalar_types;
 use super::request::{EquationsOption, REQUESTS, RequestedFunctions};
 use super::{
-    Base, Description, Expr, ExprKind, Formulation, InertiaOption, Name, ScalarType, skipped, words,
+    BaseAttachment, Description, Expr, ExprKind, Formulation, InertiaOption, Name, ScalarType, skipped, words,
 };
 use crate::diag::{Diagnostics, Place, join_with_or, nearest_candidate};
 use proc_macro2::{Span, TokenStream};
@@ -53,8 +53,8 @@ pub fn read_mechanism_options(
     let mut arguments = Arguments::parse(arguments, Span::call_site(), cx)?;
     let rejected: Vec<&str> =
         REQUESTS.into_iter().filter(|word| arguments.report_option_value(word, cx)).collect();
-    let requested = take_requests(&mut arguments);
-    *requests = read_requests(&requested, &rejected, &mut arguments, description, cx);
+    let requested = take_request_options(&mut arguments);
+    *requests = read_requested_functions(&requested, &rejected, &mut arguments, description, cx);
     description.gravity = arguments.take_expression_of_key("gravity", cx);
     description.friction_speed = arguments.take_expression_of_key("friction_speed", cx);
     description.formulation = read_formulation(&mut arguments, cx);
@@ -80,7 +80,7 @@ pub fn read_mechanism_options(
             }
         }
     }
-    let contacts = read_contacts(&mut arguments, file.as_ref().map(|(format, _)| *format), cx);
+    let contacts = read_contact_option(&mut arguments, file.as_ref().map(|(format, _)| *format), cx);
     let loops = read_loop_option(&mut arguments, file.as_ref().map(|(format, _)| *format), cx);
     let limits = arguments.take_choice("limits", &["honour", "ignore", "stops"], cx);
     let limits = limits.map_or(LimitOption::Honour, |(word, _)| match word.as_str() {
@@ -102,7 +102,7 @@ pub fn read_mechanism_options(
     let printed = printed
         .and_then(|(requested, _)| EquationsOption::WORDS.into_iter().find(|(word, _)| *word == requested));
     requests.equations = printed.map_or(EquationsOption::Readable, |(_, printed)| printed);
-    let inputs = read_inputs(&mut arguments, file.as_ref().map(|(format, _)| *format), cx);
+    let inputs = read_input_source(&mut arguments, file.as_ref().map(|(format, _)| *format), cx);
     let lock = arguments.take_string_list("lock", cx);
     let snap = arguments.take_expression_of_key("snap", cx).and_then(|e| read_snap_tolerance(&e, cx));
     let parameters = read_file_parameters(&mut arguments, description.inertias, cx);
@@ -111,7 +111,7 @@ pub fn read_mechanism_options(
     arguments.report_remaining_arguments("`#[mechanism]`", &OPTIONS, cx);
     let (format, path) = file?;
     Some(FileOptions {
-        base: if base { Base::Free } else { Base::Fixed },
+        base: if base { BaseAttachment::Free } else { BaseAttachment::Fixed },
         honour_passive: !ignore_passive,
         follow_mimic: !independent,
         limits,
@@ -128,7 +128,7 @@ pub fn read_mechanism_options(
 
 /// Reads `contacts = file | ground | ignore`: which contacts of the file are included, for a format that has
 /// them.
-fn read_contacts(
+fn read_contact_option(
     arguments: &mut Arguments,
     format: Option<FileFormat>,
     cx: &mut Diagnostics,
@@ -186,7 +186,7 @@ fn read_path(arguments: &mut Arguments, cx: &mut Diagnostics) -> Option<(FileFor
 }
 
 /// Reads `inputs = joints | actuators | none`. The default for a format without motors is `joints`.
-fn read_inputs(
+fn read_input_source(
     arguments: &mut Arguments,
     format: Option<FileFormat>,
     cx: &mut Diagnostics,
@@ -281,12 +281,12 @@ fn read_formulation(arguments: &mut Arguments, cx: &mut Diagnostics) -> Formulat
 }
 
 /// Takes the options that request functions ([`RequestedFunctions`]) from the arguments.
-fn take_requests(arguments: &mut Arguments) -> Vec<(&'static str, Place)> {
+fn take_request_options(arguments: &mut Arguments) -> Vec<(&'static str, Place)> {
     REQUESTS.iter().filter_map(|word| Some((*word, arguments.take_flag_option(word)?))).collect()
 }
 
 /// Returns the requested functions, and reports unknown or meaningless options.
-fn read_requests(
+fn read_requested_functions(
     requested: &[(&str, Place)],
     rejected: &[&str],
     arguments: &mut Arguments,

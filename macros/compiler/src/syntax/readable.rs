@@ -23,12 +23,12 @@ struct FieldIdentifiers {
 
 /// Fields of a mechanism with the identifiers in their attributes, and which fields have syntax errors.
 #[derive(Default)]
-pub struct FieldReadability {
+pub struct MechanismReadability {
     fields: Vec<FieldIdentifiers>,
     unreadable: bool,
 }
 
-impl FieldReadability {
+impl MechanismReadability {
     /// Records a field with the identifiers in its attributes: it cannot be checked if one of these names a
     /// field with a syntax error.
     pub fn record_field_identifiers(&mut self, field: &Field) {

@@ -16,7 +16,7 @@ pub fn insert_missing_commas(item: &TokenStream) -> Option<(TokenStream, syn::Er
     let mut tokens: Vec<TokenTree> = item.clone().into_iter().collect();
     let Some(TokenTree::Group(body)) = tokens.pop() else { return None };
     if body.delimiter() != Delimiter::Brace
-        || !guard::report_oversized_item(item, &mut Diagnostics::unprinted_diagnostics())
+        || !guard::check_item_size(item, &mut Diagnostics::silent_diagnostics())
     {
         return None;
     }

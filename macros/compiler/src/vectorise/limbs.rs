@@ -4,7 +4,7 @@
 
 use super::find::LimbGroup;
 use super::merge::LaneMerger;
-use super::velocities::{LaneVelocity, VectorisedVelocityPosition, pair_velocities};
+use super::velocities::{LaneVelocity, VectorisedVelocityPosition, vectorised_velocities};
 use crate::expr::{Expr, Rotation, Vec3};
 use crate::kinematics::{Dof, Joint, SpatialVector};
 use crate::mechanism::{InV, Inertia, Link, LinkId, Model, Quantity};
@@ -61,7 +61,7 @@ impl<'g> VectorisedMechanism<'g> {
         let rows = corresponding_links(joints.len(), groups);
         let merge = &mut LaneMerger::new(model.graph);
         pair_coordinates(model, &rows, merge);
-        let (velocities, places) = pair_velocities(model, joints, &rows)?;
+        let (velocities, places) = vectorised_velocities(model, joints, &rows)?;
         let mut limbs = VectorisedMechanism {
             model: model_without_passive_forces(model),
             joints: Vec::new(),

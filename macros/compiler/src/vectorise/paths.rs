@@ -60,7 +60,7 @@ impl<'a, 'g> PathsToRoot<'a, 'g> {
         let mut paths = PathsToRoot { joints, widths, links: links.collect(), groups: Vec::new() };
         paths.groups = match max_lanes {
             1 => (0..paths.links.len()).map(|dof| vec![dof]).collect(),
-            _ => paths.lane_groups(max_lanes),
+            _ => paths.dof_groups(max_lanes),
         };
         paths
     }
@@ -72,7 +72,7 @@ impl<'a, 'g> PathsToRoot<'a, 'g> {
 
     /// Divides the runs of degrees of freedom between branches into groups that are propagated together, in
     /// at most `max_lanes` SIMD lanes.
-    fn lane_groups(&self, max_lanes: usize) -> Vec<Vec<usize>> {
+    fn dof_groups(&self, max_lanes: usize) -> Vec<Vec<usize>> {
         let mut groups = Vec::new();
         for run in self.dof_runs_between_branches().iter().filter(|run| !run.is_empty()) {
             let width = self.widths[self.links[run[0]]];

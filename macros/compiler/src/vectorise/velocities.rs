@@ -26,7 +26,7 @@ pub struct VectorisedVelocityPosition {
 /// Returns the velocities of the vectorised mechanism, and the location of each velocity of the whole
 /// mechanism in it. Each row holds corresponding links. Returns `None` if the joints of the limbs are coupled
 /// differently.
-pub fn pair_velocities(
+pub fn vectorised_velocities(
     model: &Model<'_>,
     joints: &[Joint<'_>],
     rows: &[Vec<usize>],

@@ -11,7 +11,7 @@ use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::{Graph, Symbol};
 use linkwork_compiler::mechanism::Quantity;
 use linkwork_compiler::resolve::build_model;
-use linkwork_compiler::syntax::{self, Base, FileFormat, FileInputSource, FileOptions, Name};
+use linkwork_compiler::syntax::{self, BaseAttachment, FileFormat, FileInputSource, FileOptions, Name};
 use linkwork_compiler::{derive, import, parse_source_and_import};
 use std::path::Path;
 
@@ -29,7 +29,7 @@ fn coordinate_names_and_functions(
     let place = source.mechanism.description.name.place.clone();
     let name_from_text = |text: &str| Name { text: text.to_string(), place: place.clone() };
     let options = FileOptions {
-        base: if robot.free { Base::Free } else { Base::Fixed },
+        base: if robot.free { BaseAttachment::Free } else { BaseAttachment::Fixed },
         inputs: FileInputSource::Joints,
         lock: robot.locked_joint_names().map(name_from_text).collect(),
         ..FileOptions::default_options_of_file(format, name_from_text("file"))

@@ -51,6 +51,6 @@ pub fn pressure(h: f64) -> f64 {
 }
 
 /// Returns the temperature gradient, K/m, at a geopotential height, m.
-pub fn lapse_rate(h: f64) -> f64 {
+pub fn temperature_gradient(h: f64) -> f64 {
     atmosphere_at_height(h)[2]
 }

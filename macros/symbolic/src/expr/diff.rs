@@ -131,16 +131,16 @@ impl<'g> DirectionalDerivative<'g> {
                 todo.pop();
             }
         }
-        self.derivative_of_node(e.id())
+        self.known_derivative(e.id())
     }
 
-    fn derivative_of_node(&self, id: Id) -> Expr<'g> {
+    fn known_derivative(&self, id: Id) -> Expr<'g> {
         self.known.get(id).map_or(self.graph.zero(), |d| self.graph.expr(d))
     }
 
     fn differentiate_node(&self, id: Id) -> Expr<'g> {
         let expression_of_id = |id: Id| self.graph.expr(id);
-        let derivative_of_id = |id: Id| self.derivative_of_node(id);
+        let derivative_of_id = |id: Id| self.known_derivative(id);
         match self.graph.node(id) {
             // Derivatives are taken before the inputs of lanes are gathered.
             Node::Const(_) | Node::Tuple(_) | Node::Gather(_) => self.graph.zero(),

@@ -86,7 +86,7 @@ impl Function {
             Function::Abs => x.abs(),
             Function::Signum => x.signum(),
             Function::IsaTemperature => air::temperature(x),
-            Function::IsaLapseRate => air::lapse_rate(x),
+            Function::IsaLapseRate => air::temperature_gradient(x),
             Function::IsaPressure => air::pressure(x),
         }
     }

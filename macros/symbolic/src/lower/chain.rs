@@ -18,7 +18,7 @@ impl Program {
             let before = times.instruction_finish_time(&self, k);
             times.known.push(before);
             let Some((sum, ops)) =
-                self.sum_worth_reordering(k).and_then(|sum| sum.chain_of_additions().map(|ops| (sum, ops)))
+                self.sum_to_reorder(k).and_then(|sum| sum.operations_adding_terms().map(|ops| (sum, ops)))
             else {
                 continue;
             };
@@ -38,7 +38,7 @@ impl Program {
     }
 
     /// Returns the sum that ends with instruction `k`, if another order of its terms saves an instruction.
-    fn sum_worth_reordering(&self, k: usize) -> Option<Sum> {
+    fn sum_to_reorder(&self, k: usize) -> Option<Sum> {
         let ends = self.instructions[k].addition_terms()?;
         // With a product among its terms the last addition is fused already.
         if ends.iter().any(|t| self.is_fusable_product(*t)) {

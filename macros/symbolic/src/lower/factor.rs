@@ -131,13 +131,14 @@ impl Program {
     /// Returns the other factor of a term that is a product with this factor.
     fn cofactor_of_term(&self, term: Term, factor: Operand) -> Option<Term> {
         let (a, b) = self.factors_of_single_use_product(term.operand)?;
-        let is_negated_factor = |x: Operand| match (x, factor) {
+        let negation_relative_to_factor = |x: Operand| match (x, factor) {
             (Operand::Const(x), Operand::Const(f)) if x == -f => Some(true),
             (x, f) if x == f => Some(false),
             _ => None,
         };
-        let (other, opposite) =
-            is_negated_factor(a).map(|o| (b, o)).or_else(|| is_negated_factor(b).map(|o| (a, o)))?;
+        let (other, opposite) = negation_relative_to_factor(a)
+            .map(|o| (b, o))
+            .or_else(|| negation_relative_to_factor(b).map(|o| (a, o)))?;
         Some(Term { operand: other, negative: term.negative != opposite })
     }
 

@@ -29,7 +29,7 @@ impl Program {
     pub(super) fn with_fused_products(mut self) -> Program {
         let counts = self.counts;
         for k in 0..self.instructions.len() {
-            if let Some(op) = self.fuse_instruction(k) {
+            if let Some(op) = self.fused_operation(k) {
                 self.instructions[k] = op;
             }
         }
@@ -38,7 +38,7 @@ impl Program {
         self
     }
 
-    fn fuse_instruction(&self, k: usize) -> Option<Op> {
+    fn fused_operation(&self, k: usize) -> Option<Op> {
         let product = self.product_to_fuse(k)?;
         let (x, y) = self.factors_of_single_use_product(product)?;
         match self.instructions[k] {

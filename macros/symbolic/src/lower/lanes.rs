@@ -24,7 +24,7 @@ impl ValueLaneCounts {
     }
 
     /// Returns the operand of a node that needs no instruction.
-    pub(super) fn operand_without_instruction(
+    pub(super) fn operand_of_leaf_node(
         &mut self,
         graph: &Graph,
         node: Node,

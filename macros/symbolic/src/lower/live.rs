@@ -37,7 +37,7 @@ impl Program {
     /// Returns the number of instructions that may branch: table lookups, which search their grid, and
     /// functions of the math library. All sines and cosines count once, since large angles fall back to the
     /// library. Square roots, magnitudes, signs, minima and maxima do not branch.
-    pub fn possible_branch_count(&self) -> usize {
+    pub fn possibly_branching_instruction_count(&self) -> usize {
         let is_sine_or_cosine = |op: &&Op| matches!(op, Op::Call(Function::Sin | Function::Cos, _));
         let others = self.instructions.iter().filter(|op| match op {
             Op::Call(
@@ -73,10 +73,11 @@ mod tests {
     fn only_angles_tables_and_library_calls_contain_branches() {
         let g = Graph::new();
         let [a, b] = std::array::from_fn(|k| g.symbol(Symbol(k as u32)));
-        assert_eq!(lower(&[(a * b).sqrt() + a / b]).possible_branch_count(), 0);
-        assert_eq!(lower(&[a.sin() * b.cos(), b.sin()]).possible_branch_count(), 1);
+        assert_eq!(lower(&[(a * b).sqrt() + a / b]).possibly_branching_instruction_count(), 0);
+        assert_eq!(lower(&[a.sin() * b.cos(), b.sin()]).possibly_branching_instruction_count(), 1);
         assert_eq!(
-            lower(&[a.sin() + b.apply_function(crate::expr::Function::Exp)]).possible_branch_count(),
+            lower(&[a.sin() + b.apply_function(crate::expr::Function::Exp)])
+                .possibly_branching_instruction_count(),
             2
         );
     }

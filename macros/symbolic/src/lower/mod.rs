@@ -76,7 +76,7 @@ fn select_instructions(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> 
             });
             continue;
         }
-        if let Some(leaf) = lanes.operand_without_instruction(graph, *node, &mut program, &operand_of_node) {
+        if let Some(leaf) = lanes.operand_of_leaf_node(graph, *node, &mut program, &operand_of_node) {
             values.push(leaf);
             continue;
         }

@@ -43,7 +43,7 @@ impl Program {
             times.known.push(before);
             let Some(sum) = sum.as_ref().filter(|_| before + rest[k] > end) else { continue };
             let time = times.time_of_ordered_sum(&self, &sum.terms);
-            let Some(ops) = sum.chain_of_additions().filter(|_| time <= before) else { continue };
+            let Some(ops) = sum.operations_adding_terms().filter(|_| time <= before) else { continue };
             times.known[k] = time;
             for (at, op) in sum.additions.iter().zip(ops) {
                 rewritten.push((*at, op));
@@ -212,6 +212,6 @@ mod tests {
                 + test_number_of_index(8) * test_number_of_index(9)
         };
         assert!((fused.interpret_program(&test_number_of_symbol)[0] - expected).abs() < 1e-14);
-        assert_eq!(fused.estimated_call_time(), 16 + 6 * (4 + 13) + 4);
+        assert_eq!(fused.estimated_program_time(), 16 + 6 * (4 + 13) + 4);
     }
 }

@@ -20,7 +20,7 @@ impl Program {
 
     /// Returns the estimated time of a call in half cycles: the number of instructions plus the cycles of the
     /// critical path, since consecutive calls overlap only in part.
-    pub fn estimated_call_time(&self) -> usize {
+    pub fn estimated_program_time(&self) -> usize {
         let fused = self.copy_with_fused_products();
         let longest =
             fused.latencies_to_program_end(&fused.users_of_values()).into_iter().max().unwrap_or(0) / CYCLE;

@@ -28,19 +28,19 @@ const SHORT: [(usize, bool); 5] = [(1, true), (2, true), (4, true), (2, false), 
 
 /// Term of a sum without its coefficient: the number 1, a value that is not a sum, or a sum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum TermKey {
+enum TermWithoutCoefficient {
     One,
     Atom(usize),
     Sum(usize),
 }
 
-impl TermKey {
+impl TermWithoutCoefficient {
     /// Returns the number of a term's key: zero for the number 1, then the values, then the sums.
     fn term_key_index(self) -> u32 {
         match self {
-            TermKey::One => 0,
-            TermKey::Atom(a) => 1 + a as u32,
-            TermKey::Sum(s) => FIRST_SUM | s as u32,
+            TermWithoutCoefficient::One => 0,
+            TermWithoutCoefficient::Atom(a) => 1 + a as u32,
+            TermWithoutCoefficient::Sum(s) => FIRST_SUM | s as u32,
         }
     }
 }
@@ -49,7 +49,7 @@ impl TermKey {
 const FIRST_SUM: u32 = 1 << 31;
 
 /// Terms of a sum: keys of the operands with their coefficients.
-type Terms = Vec<(TermKey, f64)>;
+type Terms = Vec<(TermWithoutCoefficient, f64)>;
 
 /// Sums of a program as lists of terms, for the search of common subsums.
 #[derive(Clone)]
@@ -135,7 +135,7 @@ impl Program {
         };
         for (k, op) in self.instructions.iter().enumerate() {
             let value = match sums.ends[k] {
-                Some(sum) => out.operand_of_sum(sum),
+                Some(sum) => out.write_sum_if_needed(sum),
                 None => {
                     let values = &out.values;
                     // An operand may have become a scalar because its terms in lanes cancelled.
@@ -179,7 +179,7 @@ impl SumTable {
                 let sign = if term.negative { -1.0 } else { 1.0 };
                 let key = match term.operand {
                     Operand::Const(c) => {
-                        add_term_with_cancellation(&mut terms, TermKey::One, sign * c);
+                        add_term_with_cancellation(&mut terms, TermWithoutCoefficient::One, sign * c);
                         continue;
                     }
                     // A sum with this single use is merged into this one.
@@ -191,7 +191,7 @@ impl SumTable {
                                 .for_each(|(key, c)| add_term_with_cancellation(&mut terms, *key, sign * c));
                             continue;
                         }
-                        Some(sum) => TermKey::Sum(sum),
+                        Some(sum) => TermWithoutCoefficient::Sum(sum),
                         None => sums.key_of_non_sum_operand(term.operand, &mut known),
                     },
                     o => sums.key_of_non_sum_operand(o, &mut known),
@@ -226,8 +226,8 @@ impl SumTable {
             }
             operations += self.sums[k].len().saturating_sub(1);
             for (key, c) in &self.sums[k] {
-                operations += usize::from(*key != TermKey::One && c.abs() != 1.0);
-                if let TermKey::Sum(inner) = key {
+                operations += usize::from(*key != TermWithoutCoefficient::One && c.abs() != 1.0);
+                if let TermWithoutCoefficient::Sum(inner) = key {
                     todo.push(*inner);
                 }
             }
@@ -236,7 +236,7 @@ impl SumTable {
     }
 
     /// Returns the key of an operand that is not a sum.
-    fn key_of_non_sum_operand(&mut self, o: Operand, known: &mut AtomNumbers) -> TermKey {
+    fn key_of_non_sum_operand(&mut self, o: Operand, known: &mut AtomNumbers) -> TermWithoutCoefficient {
         let place = match o {
             Operand::Value(k) => &mut known.values[k],
             Operand::Const(c) => known.others.entry((0, c.to_bits())).or_default(),
@@ -245,7 +245,7 @@ impl SumTable {
             Operand::Gather(k) => known.others.entry((3, k as u64)).or_default(),
         };
         let atoms = &mut self.atoms;
-        TermKey::Atom(*place.get_or_insert_with(|| {
+        TermWithoutCoefficient::Atom(*place.get_or_insert_with(|| {
             atoms.push(o);
             atoms.len() - 1
         }))
@@ -254,7 +254,10 @@ impl SumTable {
     /// Expands inner sums of up to `short` terms into the sums that contain them; unless `products` is set,
     /// sums with products that fuse are not expanded.
     fn expand_inner_sums(&mut self, short: usize, products: bool) {
-        let is_fused_product = |key: &TermKey| matches!(key, TermKey::Atom(a) if self.lone_products[*a]);
+        let is_fused_product = |key: &TermWithoutCoefficient| match key {
+            TermWithoutCoefficient::Atom(a) => self.lone_products[*a],
+            _ => false,
+        };
         let keeps: Vec<bool> = self
             .sums
             .iter()
@@ -264,7 +267,9 @@ impl SumTable {
             let mut terms = Terms::new();
             for (key, c) in &self.sums[k] {
                 match *key {
-                    TermKey::Sum(inner) if self.sums[inner].len() <= short && !keeps[inner] => {
+                    TermWithoutCoefficient::Sum(inner)
+                        if self.sums[inner].len() <= short && !keeps[inner] =>
+                    {
                         self.sums[inner]
                             .iter()
                             .for_each(|(key, d)| add_term_with_cancellation(&mut terms, *key, c * d));
@@ -272,7 +277,8 @@ impl SumTable {
                     key => add_term_with_cancellation(&mut terms, key, *c),
                 }
             }
-            let is_nonconstant_positive_term = |(key, c): &(TermKey, f64)| *key != TermKey::One && *c > 0.0;
+            let is_nonconstant_positive_term =
+                |(key, c): &(TermWithoutCoefficient, f64)| *key != TermWithoutCoefficient::One && *c > 0.0;
             if terms.len() <= MOST_TERMS && terms.iter().any(is_nonconstant_positive_term) {
                 self.sums[k] = terms;
             }
@@ -283,7 +289,7 @@ impl SumTable {
     fn share_frequent_pairs(&mut self) {
         let mut pairs = SharedPairs::from_sums(&self.sums, self.atoms.len());
         while let Some((pair, list)) = pairs.take_most_shared_pair() {
-            let new = TermKey::Sum(self.sums.len());
+            let new = TermWithoutCoefficient::Sum(self.sums.len());
             let mut with_new = Vec::new();
             for &k in &list {
                 let terms = &mut self.sums[k];
@@ -316,11 +322,11 @@ impl SumTable {
     }
 
     /// Returns the key of the atom or sum with this number.
-    fn term_key_from_index(&self, number: u32) -> TermKey {
+    fn term_key_from_index(&self, number: u32) -> TermWithoutCoefficient {
         match number {
-            0 => TermKey::One,
-            n if n < FIRST_SUM => TermKey::Atom(n as usize - 1),
-            n => TermKey::Sum((n - FIRST_SUM) as usize),
+            0 => TermWithoutCoefficient::One,
+            n if n < FIRST_SUM => TermWithoutCoefficient::Atom(n as usize - 1),
+            n => TermWithoutCoefficient::Sum((n - FIRST_SUM) as usize),
         }
     }
 }
@@ -334,7 +340,7 @@ struct AtomNumbers {
 }
 
 /// Adds a term to a sum and removes a term that cancels.
-fn add_term_with_cancellation(terms: &mut Terms, key: TermKey, c: f64) {
+fn add_term_with_cancellation(terms: &mut Terms, key: TermWithoutCoefficient, c: f64) {
     match terms.iter().position(|(other, _)| *other == key) {
         Some(k) => {
             terms[k].1 += c;
@@ -369,12 +375,12 @@ impl SumWriter<'_> {
     }
 
     /// Returns the operand of a sum, which is written before its first use.
-    fn operand_of_sum(&mut self, k: usize) -> Operand {
+    fn write_sum_if_needed(&mut self, k: usize) -> Operand {
         // Iterative, because sums may be nested deeply.
         let mut todo = vec![k];
         while let Some(&top) = todo.last() {
             let inner = self.sums.sums[top].iter().filter_map(|(key, _)| match key {
-                TermKey::Sum(s) if self.written[*s].is_none() => Some(*s),
+                TermWithoutCoefficient::Sum(s) if self.written[*s].is_none() => Some(*s),
                 _ => None,
             });
             let before = todo.len();
@@ -395,9 +401,11 @@ impl SumWriter<'_> {
         let mut terms: Vec<(Operand, f64)> = Vec::new();
         for (key, c) in &self.sums.sums[k] {
             terms.push(match *key {
-                TermKey::One => (Operand::Const(c.abs()), c.signum()),
-                TermKey::Atom(a) => (self.sums.atoms[a].operand_in_other_program(&self.values), *c),
-                TermKey::Sum(s) => (self.written[s].unwrap_or(LOST), *c),
+                TermWithoutCoefficient::One => (Operand::Const(c.abs()), c.signum()),
+                TermWithoutCoefficient::Atom(a) => {
+                    (self.sums.atoms[a].operand_in_other_program(&self.values), *c)
+                }
+                TermWithoutCoefficient::Sum(s) => (self.written[s].unwrap_or(LOST), *c),
             });
         }
         // Terms are added in the order in which they are computed, positive ones before negative ones.

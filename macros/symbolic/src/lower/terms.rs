@@ -42,7 +42,7 @@ pub(super) struct Sum {
 
 impl Sum {
     /// Returns the operations that add the terms in order, or `None` if all terms are negative.
-    pub fn chain_of_additions(&self) -> Option<Vec<Op>> {
+    pub fn operations_adding_terms(&self) -> Option<Vec<Op>> {
         let mut ops = Vec::with_capacity(self.additions.len());
         let mut sum = *self.terms.first()?;
         for (term, at) in self.terms[1..].iter().zip(&self.additions) {

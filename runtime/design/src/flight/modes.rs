@@ -59,23 +59,27 @@ impl FlightModes {
         let is_longitudinal_mode = |mode: &Mode| longitudinal_share(mode) > 0.5;
         let is_lateral_mode = |mode: &Mode| lateral_share(mode) > 0.5;
         let is_oscillating_mode = |mode: &Mode| mode.exponent.im > 0.0;
-        let pitch_share = |mode: &Mode| participation_of_states(mode, &["w", "q"]);
-        let surge_share = |mode: &Mode| participation_of_states(mode, &["u", "theta", "h"]);
+        let short_period_share = |mode: &Mode| participation_of_states(mode, &["w", "q"]);
+        let phugoid_share = |mode: &Mode| participation_of_states(mode, &["u", "theta", "h"]);
         let is_short_period = |mode: &Mode| {
-            is_longitudinal_mode(mode) && is_oscillating_mode(mode) && pitch_share(mode) > surge_share(mode)
+            is_longitudinal_mode(mode)
+                && is_oscillating_mode(mode)
+                && short_period_share(mode) > phugoid_share(mode)
         };
         let is_phugoid = |mode: &Mode| {
-            is_longitudinal_mode(mode) && is_oscillating_mode(mode) && pitch_share(mode) <= surge_share(mode)
+            is_longitudinal_mode(mode)
+                && is_oscillating_mode(mode)
+                && short_period_share(mode) <= phugoid_share(mode)
         };
-        let yaw_share = |mode: &Mode| participation_of_states(mode, &["v", "r"]);
+        let dutch_roll_share = |mode: &Mode| participation_of_states(mode, &["v", "r"]);
         let is_aperiodic_lateral = |mode: &Mode| is_lateral_mode(mode) && !is_oscillating_mode(mode);
         Ok(Self {
             short_period: take_largest_matching_mode(&mut modes, is_short_period, Mode::frequency),
-            phugoid: take_largest_matching_mode(&mut modes, is_phugoid, surge_share),
+            phugoid: take_largest_matching_mode(&mut modes, is_phugoid, phugoid_share),
             dutch_roll: take_largest_matching_mode(
                 &mut modes,
-                |mode| is_lateral_mode(mode) && is_oscillating_mode(mode) && yaw_share(mode) > 0.3,
-                yaw_share,
+                |mode| is_lateral_mode(mode) && is_oscillating_mode(mode) && dutch_roll_share(mode) > 0.3,
+                dutch_roll_share,
             ),
             roll: take_largest_matching_mode(
                 &mut modes,

@@ -136,7 +136,7 @@ impl LwRobot {
         self.lists.get(index).map(Vec::as_slice).ok_or(Failure::Index(index))
     }
 
-    fn function_with_signature(&self, index: usize) -> Result<(&Function, &Signature), Failure> {
+    fn function_and_signature(&self, index: usize) -> Result<(&Function, &Signature), Failure> {
         self.functions.get(index).zip(self.signatures.get(index)).ok_or(Failure::Index(index))
     }
 }
@@ -316,7 +316,7 @@ pub unsafe extern "C" fn lw_limits(
 pub unsafe extern "C" fn lw_documentation(robot: *const LwRobot, function: usize) -> *const c_char {
     value_or_fallback(std::ptr::null(), || {
         // SAFETY: a robot of this library, as the header says.
-        Ok(unsafe { raw::shared(robot) }?.function_with_signature(function)?.1.documentation.as_ptr())
+        Ok(unsafe { raw::shared(robot) }?.function_and_signature(function)?.1.documentation.as_ptr())
     })
 }
 
@@ -324,7 +324,7 @@ pub unsafe extern "C" fn lw_documentation(robot: *const LwRobot, function: usize
 pub unsafe extern "C" fn lw_arguments(robot: *const LwRobot, function: usize) -> usize {
     // SAFETY: a robot of this library, as the header says.
     value_or_fallback(0, || {
-        Ok(unsafe { raw::shared(robot) }?.function_with_signature(function)?.1.arguments.len())
+        Ok(unsafe { raw::shared(robot) }?.function_and_signature(function)?.1.arguments.len())
     })
 }
 
@@ -346,7 +346,7 @@ pub unsafe extern "C" fn lw_argument(
             )
         };
         let found = robot
-            .function_with_signature(function)?
+            .function_and_signature(function)?
             .1
             .arguments
             .get(argument)
@@ -360,7 +360,7 @@ pub unsafe extern "C" fn lw_argument(
 pub unsafe extern "C" fn lw_results(robot: *const LwRobot, function: usize) -> usize {
     // SAFETY: a robot of this library, as the header says.
     value_or_fallback(0, || {
-        Ok(unsafe { raw::shared(robot) }?.function_with_signature(function)?.1.results.len())
+        Ok(unsafe { raw::shared(robot) }?.function_and_signature(function)?.1.results.len())
     })
 }
 
@@ -381,7 +381,7 @@ pub unsafe extern "C" fn lw_result(
             (raw::mutable_reference_from_pointer(rows)?, raw::mutable_reference_from_pointer(columns)?)
         };
         let found =
-            robot.function_with_signature(function)?.1.results.get(result).ok_or(Failure::Index(result))?;
+            robot.function_and_signature(function)?.1.results.get(result).ok_or(Failure::Index(result))?;
         (*to, *rows, *columns) = (found.0.as_ptr(), found.1, found.2);
         Ok(())
     })
@@ -390,14 +390,14 @@ pub unsafe extern "C" fn lw_result(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lw_length(robot: *const LwRobot, function: usize) -> usize {
     // SAFETY: a robot of this library, as the header says.
-    value_or_fallback(0, || Ok(unsafe { raw::shared(robot) }?.function_with_signature(function)?.0.length()))
+    value_or_fallback(0, || Ok(unsafe { raw::shared(robot) }?.function_and_signature(function)?.0.length()))
 }
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lw_compile(robot: *const LwRobot, function: usize) -> c_int {
     run_guarded(|| {
         // SAFETY: a robot of this library, as the header says.
-        unsafe { raw::shared(robot) }?.function_with_signature(function)?.0.compile();
+        unsafe { raw::shared(robot) }?.function_and_signature(function)?.0.compile();
         Ok(())
     })
 }
@@ -415,7 +415,7 @@ pub unsafe extern "C" fn lw_call(
     run_guarded(|| {
         // SAFETY: a robot of this library, as the header says.
         let robot = unsafe { raw::shared(robot) }?;
-        let (f, signature) = robot.function_with_signature(function)?;
+        let (f, signature) = robot.function_and_signature(function)?;
         let count = signature.arguments.len();
         // SAFETY: pointers to the arguments and the results, of the lengths that the header says.
         let (pointers, out) = unsafe { (raw::array(values, count)?, raw::array_mut(results, f.length())?) };
@@ -442,7 +442,7 @@ pub unsafe extern "C" fn lw_call_many(
     run_guarded(|| {
         // SAFETY: a robot of this library, as the header says.
         let robot = unsafe { raw::shared(robot) }?;
-        let f = robot.function_with_signature(function)?.0;
+        let f = robot.function_and_signature(function)?.0;
         // SAFETY: lists of `arguments` pointers and lengths, and an array of `length` values.
         let (pointers, lengths, out) = unsafe {
             (

@@ -96,7 +96,7 @@ fn define_cranelift_function(
         registers: vec![None; REGISTERS.into()],
         inputs: vec![None; plan.lengths.len()],
     };
-    plan.steps.iter().try_for_each(|step| translator.step(*step))?;
+    plan.steps.iter().try_for_each(|step| translator.translate_step(*step))?;
     let CraneliftTranslator { mut builder, .. } = translator;
     builder.ins().return_(&[]);
     builder.finalize();
@@ -124,7 +124,7 @@ struct CraneliftTranslator<'a> {
 }
 
 impl CraneliftTranslator<'_> {
-    fn step(&mut self, step: Step) -> Result<(), String> {
+    fn translate_step(&mut self, step: Step) -> Result<(), String> {
         match step {
             Step::Load(to, from, _) => {
                 let value = self.load(from)?;
@@ -156,7 +156,7 @@ impl CraneliftTranslator<'_> {
     fn write_sines_call(&mut self) -> Result<(), String> {
         let plan = self.plan;
         for (group, first) in plan.angles.iter().zip((0..).step_by(3 * WIDEST)) {
-            for (lane, from) in group.lanes().enumerate() {
+            for (lane, from) in group.lane_places().enumerate() {
                 let value = self.value_at_place(from)?;
                 self.store(value, MemoryLocation::Angle(first + lane))?;
             }

@@ -3,7 +3,7 @@
 //! Three lanes are padded to four; more than four lanes are several pieces. Scalars in operations on lanes
 //! are copied to all lanes first. Functions that have no instruction are called for one lane at a time.
 
-use super::plan::is_call;
+use super::plan::needs_function_call;
 use crate::layout::Layout;
 use linkwork_compiler::expr::Symbol;
 use linkwork_compiler::lower::{Angles, Op, Operand, Program};
@@ -137,7 +137,7 @@ impl LaneSplitter<'_> {
                 let all = all.map(|(o, k)| self.lane(o, k)).collect::<Result<Vec<_>, _>>()?;
                 Ok(self.join_scalars_as_lanes(&all))
             }
-            op if is_call(&op) && !is_angle && lanes > 1 => {
+            op if needs_function_call(&op) && !is_angle && lanes > 1 => {
                 let mut all = Vec::with_capacity(lanes);
                 for k in 0..lanes {
                     let op = self.operation_with_operands(op, |own, operand| own.lane(operand, k))?;

@@ -75,7 +75,7 @@ pub enum Step {
 }
 
 /// Whether machine code calls a function for this operation.
-pub fn is_call(op: &Op) -> bool {
+pub fn needs_function_call(op: &Op) -> bool {
     match op {
         Op::Call(f, _) => !matches!(f, Function::Sqrt | Function::Abs),
         Op::Atan2(..) | Op::Pow(..) | Op::Extreme(..) | Op::Table(..) => true,
@@ -132,7 +132,7 @@ impl ProgramPlan {
             free: Default::default(),
         };
         let angles = Angles::find_angles(program);
-        planner.angles(&angles)?;
+        planner.plan_angles(&angles)?;
         planner.plan_outputs(results)?;
         // The angles follow the work space.
         planner.plan.work = planner.plan.work.next_multiple_of(WIDEST);
@@ -201,7 +201,7 @@ impl Planner<'_> {
                     live[at] = true;
                 }
                 Operand::Const(c) => {
-                    let constant = self.constant(&[c]);
+                    let constant = self.find_or_add_constants(&[c]);
                     match self.plan.steps.last_mut() {
                         // Results and further outputs are not adjacent.
                         Some(Step::Fill(known, first, count))
@@ -250,18 +250,18 @@ impl Planner<'_> {
         let n = self.program.instructions.len();
         self.places.fill(None);
         for k in (0..n).rev().filter(|k| live[*k]) {
-            for j in self.operands(k) {
+            for j in self.values_used_by_instruction(k) {
                 self.uses[j].push(k);
             }
         }
         for k in (0..n).filter(|k| live[*k]) {
-            self.instruction(k, &stores[k])?;
+            self.plan_instruction(k, &stores[k])?;
         }
         Ok(())
     }
 
     /// Returns the values that an instruction uses, without sines and cosines, which are computed before.
-    fn operands(&self, k: usize) -> Vec<usize> {
+    fn values_used_by_instruction(&self, k: usize) -> Vec<usize> {
         let mut list = Vec::with_capacity(3);
         self.program.instructions[k].visit_operands(|operand| {
             if let Operand::Value(j) = operand

@@ -1,7 +1,7 @@
 //! Tests with random programs: machine code equals an evaluation of one operation after the other, bit for
 //! bit.
 
-use super::plan::is_call;
+use super::plan::needs_function_call;
 use super::{Code, write_sines_and_cosines};
 use crate::layout::Layout;
 use crate::table::AnyTable;
@@ -147,7 +147,7 @@ impl LaneProgramBuilder {
             Op::Call(Function::Sin | Function::Cos, a) if !is_plain => Op::Neg(a),
             op => op,
         };
-        self.is_plain.push(is_plain && !matches!(op, Op::Call(..)) && !is_call(&op));
+        self.is_plain.push(is_plain && !matches!(op, Op::Call(..)) && !needs_function_call(&op));
         self.program.instructions.push(op);
         self.is_wide.push(is_wide);
     }

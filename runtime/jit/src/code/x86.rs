@@ -4,7 +4,7 @@ mod encoding;
 mod general;
 mod sines;
 
-use super::plan::{MemoryLocation, Place, ProgramPlan, Step, is_call};
+use super::plan::{MemoryLocation, Place, ProgramPlan, Step, needs_function_call};
 use encoding::*;
 use general::{CALLING, GeneralRegisterRoles, InputAddressInRegister, LEAF};
 use linkwork_compiler::expr::{Extreme, Function as Elementary};
@@ -47,12 +47,12 @@ pub fn write(plan: &mut ProgramPlan, results: usize, helpers: HelperLookup) -> R
         return Err("a program is too long".to_string());
     }
     let plan = &*plan;
-    let calls_function = |step: &Step| matches!(step, Step::Operation(op, _, _, 1) if is_call(op));
-    let registers = if plan.steps.iter().any(calls_function) { CALLING } else { LEAF };
+    let is_call_step = |step: &Step| matches!(step, Step::Operation(op, _, _, 1) if needs_function_call(op));
+    let registers = if plan.steps.iter().any(is_call_step) { CALLING } else { LEAF };
     let (code, pointers) = (Assembler::default(), Vec::new());
     let mut writer = Writer { code, plan, results, masks, helpers, registers, pointers, uses: 0, slow: None };
     let frame = writer.write_prologue()?;
-    plan.steps.iter().try_for_each(|step| writer.step(*step))?;
+    plan.steps.iter().try_for_each(|step| writer.write_step(*step))?;
     writer.write_epilogue(frame);
     writer.write_large_angle_code()?;
     Ok(writer.code.bytes)
@@ -78,7 +78,7 @@ impl Writer<'_> {
     /// Writes the prologue of the function. Returns the size of its stack frame, bytes.
     fn write_prologue(&mut self) -> Result<i32, String> {
         let GeneralRegisterRoles { constants, more, results, inputs, tables, saved, .. } = self.registers;
-        saved.iter().for_each(|register| self.code.general(0x50, *register));
+        saved.iter().for_each(|register| self.code.write_general_register_instruction(0x50, *register));
         let numbers = self.plan.work + 3 * self.plan.angle_count();
         // The saved registers and the address of the caller: with them the stack is aligned to 16 bytes. The
         // work space in it is aligned to registers.
@@ -95,7 +95,7 @@ impl Writer<'_> {
         self.code.write_effective_address_load(constants, RSI, BIAS);
         for (to, from) in [(results, RCX), (more, 8), (inputs, RDI), (tables, RDX)] {
             if to != from {
-                self.code.copy(to, from);
+                self.code.write_general_register_copy(to, from);
             }
         }
         Ok(frame)
@@ -104,11 +104,15 @@ impl Writer<'_> {
     fn write_epilogue(&mut self, frame: i32) {
         self.code.write_vzeroupper();
         self.code.add_to_stack_pointer(frame);
-        self.registers.saved.iter().rev().for_each(|register| self.code.general(0x58, *register));
+        self.registers
+            .saved
+            .iter()
+            .rev()
+            .for_each(|register| self.code.write_general_register_instruction(0x58, *register));
         self.code.bytes.push(0xC3);
     }
 
-    fn step(&mut self, step: Step) -> Result<(), String> {
+    fn write_step(&mut self, step: Step) -> Result<(), String> {
         match step {
             Step::Load(to, from, width) => {
                 let from = self.memory(from);
@@ -117,7 +121,7 @@ impl Writer<'_> {
             Step::Store(from, to, width) => self.store(from, to, width),
             Step::StoreSecond(from, to) => {
                 let to = self.memory(to);
-                self.code.instruction(STORE_SECOND, from, 0, to);
+                self.code.write_vex_instruction(STORE_SECOND, from, 0, to);
             }
             Step::Copy(from, to, width) => {
                 let from = self.memory(from);
@@ -125,17 +129,19 @@ impl Writer<'_> {
                 self.store(SCRATCH, to, width);
             }
             Step::Fill(constant, first, count) => self.store_constant_repeatedly(constant, first, count),
-            Step::Operation(op, to, places, 1) if is_call(&op) => self.write_function_call(op, to, places)?,
+            Step::Operation(op, to, places, 1) if needs_function_call(&op) => {
+                self.write_function_call(op, to, places)?
+            }
             Step::Operation(op, to, places, width) => {
                 let places = places.map(|place| self.operand(place));
-                self.write_operation_code(op, to, places, width)?;
+                self.write_inline_operation(op, to, places, width)?;
             }
-            Step::Sines => self.sines()?,
+            Step::Sines => self.write_sines()?,
         }
         Ok(())
     }
 
-    fn write_operation_code(
+    fn write_inline_operation(
         &mut self,
         op: Op,
         to: u8,
@@ -158,7 +164,7 @@ impl Writer<'_> {
                     Rm::Register(register) => register,
                     Rm::Memory(..) => to,
                 };
-                self.code.instruction(encoding_on_lanes(SQUARE_ROOT, width), to, other, a);
+                self.code.write_vex_instruction(encoding_on_lanes(SQUARE_ROOT, width), to, other, a);
             }
             // The opcodes of the forms differ by constants.
             Op::MulAdd(..) => self.write_fused_product(0x99, to, [a, b, c], width),
@@ -176,15 +182,15 @@ impl Writer<'_> {
     fn write_lane_move(&mut self, k: usize, to: u8, from: Rm, width: usize) {
         match (k, from) {
             (0, from) => match width {
-                2 => self.code.instruction(COPY_TO_TWO, to, 0, from),
-                _ => self.code.instruction(BROADCAST, to, 0, from),
+                2 => self.code.write_vex_instruction(COPY_TO_TWO, to, 0, from),
+                _ => self.code.write_vex_instruction(BROADCAST, to, 0, from),
             },
             (k, Rm::Memory(base, offset)) => {
                 self.code.load(to, Rm::Memory(base, offset + 8 * k as i32), width)
             }
-            (1, Rm::Register(register)) => self.code.instruction(SECOND_LANES, to, register, from),
+            (1, Rm::Register(register)) => self.code.write_vex_instruction(SECOND_LANES, to, register, from),
             (_, Rm::Register(register)) => {
-                self.code.instruction(EXTRACT_UPPER, register, 0, Rm::Register(to));
+                self.code.write_vex_instruction(EXTRACT_UPPER, register, 0, Rm::Register(to));
                 self.code.bytes.push(1);
             }
         }
@@ -193,15 +199,19 @@ impl Writer<'_> {
     /// Writes the join of two numbers.
     fn write_join_of_numbers(&mut self, to: u8, a: Rm, b: Rm) {
         match (a, b) {
-            (Rm::Register(first), Rm::Register(_)) => self.code.instruction(FIRST_LANES, to, first, b),
+            (Rm::Register(first), Rm::Register(_)) => {
+                self.code.write_vex_instruction(FIRST_LANES, to, first, b)
+            }
             (Rm::Memory(..), Rm::Register(_)) => {
                 self.code.load(SCRATCH, a, 1);
-                self.code.instruction(FIRST_LANES, to, SCRATCH, b);
+                self.code.write_vex_instruction(FIRST_LANES, to, SCRATCH, b);
             }
-            (Rm::Register(first), Rm::Memory(..)) => self.code.instruction(LOAD_SECOND, to, first, b),
+            (Rm::Register(first), Rm::Memory(..)) => {
+                self.code.write_vex_instruction(LOAD_SECOND, to, first, b)
+            }
             (Rm::Memory(..), Rm::Memory(..)) => {
                 self.code.load(to, a, 1);
-                self.code.instruction(LOAD_SECOND, to, to, b);
+                self.code.write_vex_instruction(LOAD_SECOND, to, to, b);
             }
         }
     }
@@ -215,7 +225,7 @@ impl Writer<'_> {
                 SCRATCH
             }
         };
-        self.code.instruction(INSERT_UPPER, to, first, b);
+        self.code.write_vex_instruction(INSERT_UPPER, to, first, b);
         self.code.bytes.push(1);
     }
 
@@ -223,11 +233,11 @@ impl Writer<'_> {
     fn write_commutative(&mut self, code: Encoding, to: u8, a: Rm, b: Rm, width: usize) {
         let code = encoding_on_lanes(code, width);
         match (a, b) {
-            (Rm::Register(a), b) => self.code.instruction(code, to, a, b),
-            (a, Rm::Register(b)) => self.code.instruction(code, to, b, a),
+            (Rm::Register(a), b) => self.code.write_vex_instruction(code, to, a, b),
+            (a, Rm::Register(b)) => self.code.write_vex_instruction(code, to, b, a),
             (a, b) => {
                 self.code.load(to, a, width);
-                self.code.instruction(code, to, to, b);
+                self.code.write_vex_instruction(code, to, to, b);
             }
         }
     }
@@ -241,7 +251,7 @@ impl Writer<'_> {
                 SCRATCH
             }
         };
-        self.code.instruction(code, to, first, b);
+        self.code.write_vex_instruction(code, to, first, b);
     }
 
     /// Writes a fused product and sum. `first` is the opcode of the form with the factor and the sum in
@@ -249,7 +259,8 @@ impl Writer<'_> {
     /// sum in the result's register (231).
     fn write_fused_product(&mut self, first: u8, to: u8, [a, b, c]: [Rm; 3], width: usize) {
         use Rm::{Memory, Register};
-        let [exchanged, product, sum] = [0, 16, 32].map(|more| encoding_on_lanes(fused(first + more), width));
+        let [exchanged, product, sum] =
+            [0, 16, 32].map(|more| encoding_on_lanes(fused_encoding(first + more), width));
         let is_destination_register = |rm: Rm| matches!(rm, Register(register) if register == to);
         // A factor in the result's register, or otherwise one in memory, comes first.
         let [a, b] = match (a, b) {
@@ -263,10 +274,10 @@ impl Writer<'_> {
                 self.code.load(to, c, width);
             }
             match (a, b) {
-                (a, Register(b)) => self.code.instruction(sum, to, b, a),
+                (a, Register(b)) => self.code.write_vex_instruction(sum, to, b, a),
                 (a, b) => {
                     self.code.load(SCRATCH, a, width);
-                    self.code.instruction(sum, to, SCRATCH, b);
+                    self.code.write_vex_instruction(sum, to, SCRATCH, b);
                 }
             }
             return;
@@ -275,11 +286,11 @@ impl Writer<'_> {
             self.code.load(to, a, width);
         }
         match (b, c) {
-            (Register(b), c) => self.code.instruction(product, to, b, c),
-            (b, Register(c)) => self.code.instruction(exchanged, to, c, b),
+            (Register(b), c) => self.code.write_vex_instruction(product, to, b, c),
+            (b, Register(c)) => self.code.write_vex_instruction(exchanged, to, c, b),
             (b, c) => {
                 self.code.load(SCRATCH, b, width);
-                self.code.instruction(product, to, SCRATCH, c);
+                self.code.write_vex_instruction(product, to, SCRATCH, c);
             }
         }
     }
@@ -293,7 +304,7 @@ impl Writer<'_> {
             Op::Extreme(Extreme::Min, ..) => ("min", 2),
             Op::Extreme(Extreme::Max, ..) => ("max", 2),
             Op::Table(lookup, ..) => {
-                self.code.copy(RDI, self.registers.tables);
+                self.code.write_general_register_copy(RDI, self.registers.tables);
                 self.code.write_move_immediate(RSI, lookup.table_index() as u64);
                 let orders = (0..lookup.variable_count())
                     .fold(0, |all, k| all | lookup.derivative_order(k) << (2 * k));
@@ -309,7 +320,7 @@ impl Writer<'_> {
             let from = self.operand(*place);
             self.code.load(register, from, 1);
         }
-        self.call(name)?;
+        self.write_helper_call(name)?;
         if to != 0 {
             self.code.load(to, Rm::Register(0), 1);
         }
@@ -317,7 +328,7 @@ impl Writer<'_> {
     }
 
     /// Writes a call of a function, after which no address of an input is in a register.
-    fn call(&mut self, name: &str) -> Result<(), String> {
+    fn write_helper_call(&mut self, name: &str) -> Result<(), String> {
         let address = (self.helpers)(name).ok_or("a function is missing")?;
         self.code.write_vzeroupper();
         self.code.write_move_immediate(RAX, address as u64);
@@ -330,13 +341,13 @@ impl Writer<'_> {
         let long = count >= 4;
         let code = if long { BROADCAST } else { LOAD };
         let from = self.memory(MemoryLocation::Constant(constant_));
-        self.code.instruction(code, SCRATCH, 0, from);
+        self.code.write_vex_instruction(code, SCRATCH, 0, from);
         let mut at = first;
         while at < first + count {
             let rest = first + count - at;
             let to = self.memory(MemoryLocation::Output(at));
             let code = if rest >= 4 { STORE_FOUR } else { STORE };
-            self.code.instruction(code, SCRATCH, 0, to);
+            self.code.write_vex_instruction(code, SCRATCH, 0, to);
             at += if rest >= 4 { 4 } else { 1 };
         }
     }
@@ -369,7 +380,7 @@ impl Writer<'_> {
 
     fn store(&mut self, from: u8, to: MemoryLocation, width: usize) {
         let to = self.memory(to);
-        self.code.instruction(encoding_on_lanes(STORE, width), from, 0, to);
+        self.code.write_vex_instruction(encoding_on_lanes(STORE, width), from, 0, to);
     }
 
     fn constant(&self, index: usize) -> Rm {

@@ -1,6 +1,6 @@
 //! Products of matrices by registers of eight numbers (AVX-512).
 
-use super::{Columns, ROWS};
+use super::{ColumnGroup, ROWS};
 use std::arch::x86_64::{
     __mmask8, _mm512_fmadd_pd, _mm512_mask_storeu_pd, _mm512_maskz_loadu_pd, _mm512_set1_pd,
     _mm512_setzero_pd,
@@ -11,11 +11,11 @@ const MOST: usize = 3;
 
 /// Replaces columns of matrices with `n` rows by minus their products with a square matrix.
 #[target_feature(enable = "avx512f")]
-pub fn multiply<const K: usize>(
+pub fn replace_columns_by_negative_products<const K: usize>(
     n: usize,
     square: &[f64],
     matrices: [&mut [f64]; K],
-    columns: &[Vec<Columns>; K],
+    columns: &[Vec<ColumnGroup>; K],
     work: &mut [f64],
 ) {
     for (matrix, groups) in matrices.into_iter().zip(columns) {
@@ -35,7 +35,7 @@ fn replace_group_by_negative_products<const M: usize>(
     n: usize,
     square: &[f64],
     matrix: &mut [f64],
-    group: &Columns,
+    group: &ColumnGroup,
     work: &mut [f64],
 ) {
     let (factors, _) = work.as_chunks_mut::<M>();
@@ -59,7 +59,7 @@ fn compute_product_rows<const M: usize, const R: usize>(
     [n, first]: [usize; 2],
     square: &[f64],
     matrix: &mut [f64],
-    group: &Columns,
+    group: &ColumnGroup,
     factors: &[[f64; M]],
 ) {
     // Lanes of each register that are rows of the matrix.

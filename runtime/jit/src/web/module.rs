@@ -48,13 +48,13 @@ impl BinaryModule {
     ///
     /// The program has lanes, or reads values that are no inputs of the layout.
     pub fn add(&mut self, name: &str, program: &Program, layout: &Layout) -> Result<(), String> {
-        let kind = self.type_index(vec![I32; layout.len() + 1], Vec::new());
+        let kind = self.find_or_add_type(vec![I32; layout.len() + 1], Vec::new());
         let mut writer = FunctionBodyWriter {
             module: self,
             program,
             layout,
             code: Vec::new(),
-            values: vec![Value::Missing; program.instructions.len()],
+            values: vec![ResultLocation::Missing; program.instructions.len()],
             locals: 0,
         };
         writer.write_body()?;
@@ -114,20 +114,20 @@ impl BinaryModule {
     }
 
     /// Returns the index of a function type, which is added to the module if it is new.
-    fn type_index(&mut self, parameters: Vec<u8>, results: Vec<u8>) -> usize {
+    fn find_or_add_type(&mut self, parameters: Vec<u8>, results: Vec<u8>) -> usize {
         let kind = (parameters, results);
-        index_of(&mut self.types, kind)
+        find_or_append(&mut self.types, kind)
     }
 
     /// Returns the index of an imported function with these parameters, which is added if it is new.
     fn import_function(&mut self, name: &str, parameters: Vec<u8>) -> usize {
-        let kind = self.type_index(parameters, vec![F64]);
-        index_of(&mut self.imports, (name.to_string(), kind))
+        let kind = self.find_or_add_type(parameters, vec![F64]);
+        find_or_append(&mut self.imports, (name.to_string(), kind))
     }
 }
 
 /// Returns the index of an entry of a list, to which it is appended if it is absent.
-fn index_of<T: PartialEq>(list: &mut Vec<T>, entry: T) -> usize {
+fn find_or_append<T: PartialEq>(list: &mut Vec<T>, entry: T) -> usize {
     list.iter().position(|known| *known == entry).unwrap_or_else(|| {
         list.push(entry);
         list.len() - 1
@@ -136,7 +136,7 @@ fn index_of<T: PartialEq>(list: &mut Vec<T>, entry: T) -> usize {
 
 /// Location of an instruction's result in the generated WebAssembly code.
 #[derive(Clone, Copy, PartialEq)]
-enum Value {
+enum ResultLocation {
     Missing,
     Local(usize),
     /// The result is computed where it is used, with operations nested this deep.
@@ -148,7 +148,7 @@ struct FunctionBodyWriter<'a> {
     program: &'a Program,
     layout: &'a Layout,
     code: Vec<u8>,
-    values: Vec<Value>,
+    values: Vec<ResultLocation>,
     locals: usize,
 }
 
@@ -159,17 +159,17 @@ impl FunctionBodyWriter<'_> {
             let mut depth = 1;
             op.visit_operands(|operand| {
                 if let Operand::Value(a) = operand
-                    && let Value::Nested(nested) = self.values[a]
+                    && let ResultLocation::Nested(nested) = self.values[a]
                 {
                     depth = depth.max(nested + 1);
                 }
             });
             if program.uses.get(k) == Some(&1) && depth < DEPTH {
-                self.values[k] = Value::Nested(depth);
+                self.values[k] = ResultLocation::Nested(depth);
                 continue;
             }
             self.write_instruction(k)?;
-            self.values[k] = Value::Local(self.locals);
+            self.values[k] = ResultLocation::Local(self.locals);
             self.code.push(SET);
             let local = self.local_index(self.locals);
             write_unsigned(&mut self.code, local);
@@ -264,13 +264,13 @@ impl FunctionBodyWriter<'_> {
             }
             Operand::Symbol(symbol) => self.write_load_of_symbol(symbol)?,
             Operand::Value(k) => match self.values[k] {
-                Value::Local(local) => {
+                ResultLocation::Local(local) => {
                     self.code.push(GET);
                     let local = self.local_index(local);
                     write_unsigned(&mut self.code, local);
                 }
-                Value::Nested(_) => self.write_instruction(k)?,
-                Value::Missing => return Err("a value is used before it is computed".to_string()),
+                ResultLocation::Nested(_) => self.write_instruction(k)?,
+                ResultLocation::Missing => return Err("a value is used before it is computed".to_string()),
             },
             Operand::Tuple(_) | Operand::Gather(_) => return Err("a program has lanes".to_string()),
         }

@@ -17,7 +17,7 @@ const MOST_STEPS: usize = 12;
 type AccelerationAndJerk<T, const NV: usize> = (SVector<T, NV>, SVector<T, NV>);
 
 /// Path along the branch of the constraints on which a state is.
-struct AssemblyModePath<T, const NQ: usize, const NV: usize> {
+struct ConstraintBranchPath<T, const NQ: usize, const NV: usize> {
     t: T,
     q: SVector<T, NQ>,
     v: SVector<T, NV>,
@@ -66,19 +66,20 @@ where
     let clear = speed > epsilon::<T>().cbrt();
     let moves =
         clear && (!driven || speed * speed > rate * safe_distance_from_singularity::<T>() * constant(0.03));
-    let way = AssemblyModePath { t, q: *q, v: *v, heading: if moves { *v } else { *least }, moves };
+    let way = ConstraintBranchPath { t, q: *q, v: *v, heading: if moves { *v } else { *least }, moves };
     let (clear, within) = (
         safe_distance_from_singularity::<T>() * constant(0.4),
         well_conditioned_threshold::<T>() * constant(0.5),
     );
-    let permitted_accelerations_from_path = |way: &AssemblyModePath<T, NQ, NV>, parts: &[f64], clear: T| {
-        let pace = safe_distance_from_singularity::<T>() / largest_magnitude(&way.heading);
-        let goes = pace > T::zero() && pace.is_finite();
-        let steps = parts.iter().filter(|_| goes).map(|part| pace * constant(*part));
-        steps.into_iter().find_map(|step| {
-            way.points_on_path(step, clear).interpolated_accelerations_at_state(mechanism, structure)
-        })
-    };
+    let permitted_accelerations_from_path =
+        |way: &ConstraintBranchPath<T, NQ, NV>, parts: &[f64], clear: T| {
+            let pace = safe_distance_from_singularity::<T>() / largest_magnitude(&way.heading);
+            let goes = pace > T::zero() && pace.is_finite();
+            let steps = parts.iter().filter(|_| goes).map(|part| pace * constant(*part));
+            steps.into_iter().find_map(|step| {
+                way.points_on_path(step, clear).interpolated_accelerations_at_state(mechanism, structure)
+            })
+        };
     // Other paths and step lengths are tried if the interpolation fails on the first ones.
     permitted_accelerations_from_path(&way, &[1.0, 2.0], clear)
         .or_else(|| {
@@ -100,7 +101,7 @@ where
         .acceleration_by_gauss_principle(structure, system)
 }
 
-impl<T: Real, const NQ: usize, const NV: usize> AssemblyModePath<T, NQ, NV> {
+impl<T: Real, const NQ: usize, const NV: usize> ConstraintBranchPath<T, NQ, NV> {
     fn points_on_path(&self, step: T, clear: T) -> PathPoints<'_, T, NQ, NV> {
         PathPoints { way: self, step, clear }
     }
@@ -118,7 +119,7 @@ impl<T: Real, const NQ: usize, const NV: usize> AssemblyModePath<T, NQ, NV> {
     {
         let own = safe_distance_from_singularity::<T>() / largest_magnitude(&self.heading);
         let any = SVector::from_fn(|k, _| constant::<T>([1.0, -0.7, 0.9, 0.6, -0.8][k % 5]));
-        let still = AssemblyModePath { v: SVector::zeros(), moves: false, ..*self };
+        let still = ConstraintBranchPath { v: SVector::zeros(), moves: false, ..*self };
         let heading = [0.1, 0.3, 1.0, 3.0, 10.0].into_iter().find_map(|part| {
             let points = still.points_on_path(own * constant(part), epsilon::<T>().cbrt());
             let course = (SVector::zeros(), SVector::zeros());
@@ -127,13 +128,13 @@ impl<T: Real, const NQ: usize, const NV: usize> AssemblyModePath<T, NQ, NV> {
             Some((free_acceleration_at(-points.step)?.free + free_acceleration_at(points.step)?.free) * any)
         })?;
         let size = largest_magnitude(&heading);
-        (size > T::zero()).then(|| AssemblyModePath { heading: heading / size, moves: false, ..*self })
+        (size > T::zero()).then(|| ConstraintBranchPath { heading: heading / size, moves: false, ..*self })
     }
 
     /// Returns the path with its component along another path removed from the direction.
     fn orthogonalised_path(&self, other: &Self) -> Self {
         let part = self.heading.dot(&other.heading) / other.heading.norm_squared();
-        AssemblyModePath { heading: self.heading - other.heading * part, ..*self }
+        ConstraintBranchPath { heading: self.heading - other.heading * part, ..*self }
     }
 
     /// Returns time and state at distance `h` along the path, projected on the constraints. The projection
@@ -188,7 +189,7 @@ impl<T: Real, const NQ: usize, const NV: usize> AssemblyModePath<T, NQ, NV> {
 /// Equally spaced points on a path along a branch of the constraints, at multiples of `step`. Constraint rows
 /// above the relative magnitude `clear` count as well-conditioned.
 struct PathPoints<'a, T, const NQ: usize, const NV: usize> {
-    way: &'a AssemblyModePath<T, NQ, NV>,
+    way: &'a ConstraintBranchPath<T, NQ, NV>,
     step: T,
     clear: T,
 }

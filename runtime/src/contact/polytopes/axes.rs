@@ -160,7 +160,7 @@ pub(super) fn best_edge_axis<T: Real>(
                 continue;
             }
             // The normal points out of the first polytope and into the second.
-            let outward = normals.map_or_else(|| -sum(other_normals), |[a, b]| a + b);
+            let outward = normals.map_or_else(|| -sum_of_normals(other_normals), |[a, b]| a + b);
             let side = if across.dot(&outward) < T::zero() { -T::one() } else { T::one() };
             let between = second.vertex(other_edge.ends[0]) - start;
             let distance = across.dot(&between) * side / square.sqrt();
@@ -172,7 +172,7 @@ pub(super) fn best_edge_axis<T: Real>(
     best
 }
 
-fn sum<T: Real>(normals: Option<[Vector3<T>; 2]>) -> Vector3<T> {
+fn sum_of_normals<T: Real>(normals: Option<[Vector3<T>; 2]>) -> Vector3<T> {
     normals.map_or_else(Vector3::zeros, |[a, b]| a + b)
 }
 

@@ -45,7 +45,7 @@ enum Line {
 
 impl<T: Real> ClippedPoint<T> {
     /// Returns a placeholder.
-    pub(super) fn unused() -> Self {
+    pub(super) fn placeholder_point() -> Self {
         let origin = PointOrigin::Vertex(0);
         ClippedPoint { place: Vector3::zeros(), height: T::zero(), origin, number: 0, next: Line::Side(0) }
     }
@@ -59,7 +59,7 @@ struct Polygon<T> {
 
 impl<T: Real> Polygon<T> {
     fn new() -> Self {
-        Polygon { points: [ClippedPoint::unused(); MAX_POINTS], count: 0 }
+        Polygon { points: [ClippedPoint::placeholder_point(); MAX_POINTS], count: 0 }
     }
 
     fn push(&mut self, point: ClippedPoint<T>) {

@@ -1,6 +1,6 @@
 //! Closest points of two separated polytopes, at vertices and edges.
 
-use super::{Placed, Polytope, edge_as_centered_segment, vector};
+use super::{Placed, Polytope, edge_as_centered_segment, vector_from_array};
 use crate::Real;
 use crate::private::constant;
 use nalgebra::Vector3;
@@ -39,7 +39,7 @@ impl ClosestFeatures {
         let [a, b] = self.0;
         [(a, first), (b, second)].map(|(feature, shape)| match feature {
             VertexOrEdge::Vertex(k) => {
-                let vertex = shape.vertices.get(k).map_or_else(Vector3::zeros, |p| vector(*p));
+                let vertex = shape.vertices.get(k).map_or_else(Vector3::zeros, |p| vector_from_array(*p));
                 (vertex, Vector3::zeros(), T::zero())
             }
             VertexOrEdge::Edge(k) => shape.edges.get(k).map_or_else(

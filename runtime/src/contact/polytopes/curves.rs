@@ -39,7 +39,7 @@ impl<T: Real> Curve<T> {
 
     /// Returns the circle around the axis of a cylinder through a point of its side or rim.
     pub(super) fn circle(shape: &Placed<'_, T>, point: Vector3<T>) -> Self {
-        let arm = shape.arm(&point);
+        let arm = shape.offset_from_cylinder_axis(&point);
         let square = arm.norm_squared();
         let tangent = shape.direction(0).cross(&arm) / square.sqrt();
         Curve { point, tangent, curvature: -arm / square, radius: T::zero() }

@@ -88,7 +88,7 @@ impl<T: Real> Points<T> {
     }
 
     /// Returns the points behind a plane, and those where the polygon crosses it.
-    fn clip(&self, outward: &Vector3<T>, limit: T) -> Self {
+    fn polygon_behind_plane(&self, outward: &Vector3<T>, limit: T) -> Self {
         let mut clipped = Points::new();
         let places = self.places();
         for (k, place) in places.iter().enumerate() {
@@ -122,7 +122,7 @@ impl<T: Real> SelectedPoints<T> {
 }
 
 /// Points of a body opposite to a face.
-struct OppositePoints<T> {
+struct PointsOppositeFace<T> {
     /// Lowest point or lowest line of a cylinder, as points on circles around its axis.
     moving: [Option<Curve<T>>; 2],
     fixed: Points<T>,
@@ -255,11 +255,12 @@ fn is_above_face<T: Real>(shape: &Placed<'_, T>, face: usize, place: &Vector3<T>
         let arm = place - shape.vertex(face as u8);
         return (arm - normal * normal.dot(&arm)).norm() <= constant::<T>(shape.shape.radius) + tolerance;
     }
-    sides(&corners(shape, face), &normal).all(|(outward, limit)| outward.dot(place) <= limit + tolerance)
+    side_planes(&corners(shape, face), &normal)
+        .all(|(outward, limit)| outward.dot(place) <= limit + tolerance)
 }
 
 /// Returns the planes of the sides of a face: unit normals out of the face, and offsets.
-fn sides<T: Real>(corners: &Points<T>, normal: &Vector3<T>) -> impl Iterator<Item = (Vector3<T>, T)> {
+fn side_planes<T: Real>(corners: &Points<T>, normal: &Vector3<T>) -> impl Iterator<Item = (Vector3<T>, T)> {
     let (corners, normal) = (*corners, *normal);
     (0..corners.count).filter_map(move |k| {
         let start = corners.places().get(k)?;
@@ -275,7 +276,7 @@ fn points_opposite_to_face<T: Real>(
     other: &Placed<'_, T>,
     face: usize,
     tolerance: T,
-) -> OppositePoints<T> {
+) -> PointsOppositeFace<T> {
     let (normal, offset) = (own.normal(face), own.offset(face));
     let height = |place: &Vector3<T>| normal.dot(place) - offset;
     let lowest = other.support(&-normal);
@@ -289,15 +290,15 @@ fn points_opposite_to_face<T: Real>(
     } else if is_round {
         let mut line = Points::new();
         let (start, end) = (other.vertex(0), other.vertex(1));
-        let arm = other.arm(&lowest);
+        let arm = other.offset_from_cylinder_axis(&lowest);
         line.push(start + arm);
         line.push(end + arm);
         line
     } else {
         opposite_face(other, &normal, tolerance).map_or_else(Points::new, |k| corners(other, k))
     };
-    for (outward, limit) in sides(&corners(own, face), &normal) {
-        fixed = fixed.clip(&outward, limit + tolerance);
+    for (outward, limit) in side_planes(&corners(own, face), &normal) {
+        fixed = fixed.polygon_behind_plane(&outward, limit + tolerance);
     }
     let reached = height(&lowest) + tolerance;
     has_lowest |= fixed.places().iter().any(|place| height(place) <= reached);
@@ -325,7 +326,7 @@ fn points_opposite_to_face<T: Real>(
         let is_hidden = !is_listed && is_above_face(own, face, &lowest, tolerance);
         moving[0] = is_hidden.then(|| Curve::vertex(lowest));
     }
-    OppositePoints { moving, fixed, has_lowest }
+    PointsOppositeFace { moving, fixed, has_lowest }
 }
 
 /// Rotates the order of points so that the lowest is the first.
@@ -348,7 +349,7 @@ struct SegmentWithEnds<T> {
 impl<T: Real> SegmentWithEnds<T> {
     /// Returns the axis of a cylinder with both rims, which are evaluated near their highest points along a
     /// direction.
-    fn cylinder(shape: &Placed<'_, T>, along: &Vector3<T>) -> Self {
+    fn cylinder_axis_and_rims(shape: &Placed<'_, T>, along: &Vector3<T>) -> Self {
         let [start, end] = [shape.vertex(0), shape.vertex(1)];
         let axis = shape.direction(0);
         let across = along - axis * axis.dot(along);
@@ -442,7 +443,7 @@ fn for_each_segment<T: Real>(
     f: &mut dyn FnMut(&SegmentWithEnds<T>),
 ) {
     if shape.shape.radius > 0.0 {
-        return f(&SegmentWithEnds::cylinder(shape, along));
+        return f(&SegmentWithEnds::cylinder_axis_and_rims(shape, along));
     }
     let least = along.dot(&shape.support(along)) - size * constant(NEARLY_HIGHEST);
     for (k, edge) in shape.shape.edges.iter().enumerate() {

@@ -79,7 +79,7 @@ impl<T: Real> ImpulseDerivativeBlock<T> {
     }
 
     /// Adds to the derivative of an impulse with respect to a contact velocity.
-    pub(super) fn add_entry(&mut self, i: usize, j: usize, value: T) {
+    pub(super) fn add_to_entry(&mut self, i: usize, j: usize, value: T) {
         if let Some(entry) = self.entries.get_mut(i).and_then(|row| row.get_mut(j)) {
             *entry += value;
         }
@@ -87,10 +87,10 @@ impl<T: Real> ImpulseDerivativeBlock<T> {
 
     /// Adds the product of a column and a row of values to the rows of friction from `first` on.
     pub(super) fn add_scaled_outer_product(&mut self, first: usize, factor: T, [x, y]: [T; 2]) {
-        self.add_entry(first, first, factor * x * x);
-        self.add_entry(first, first + 1, factor * x * y);
-        self.add_entry(first + 1, first, factor * x * y);
-        self.add_entry(first + 1, first + 1, factor * y * y);
+        self.add_to_entry(first, first, factor * x * x);
+        self.add_to_entry(first, first + 1, factor * x * y);
+        self.add_to_entry(first + 1, first, factor * x * y);
+        self.add_to_entry(first + 1, first + 1, factor * y * y);
     }
 }
 
@@ -103,7 +103,10 @@ impl<T: Real, const NR: usize> DelassusFactor<T, NR> {
     }
 
     /// Begins `B` with columns, and without rows; false if the columns are more than the arrays have.
-    pub(in super::super) fn set_basis_columns<const N: usize>(&mut self, columns: &UsedColumns<N>) -> bool {
+    pub(in super::super) fn restart_with_columns<const N: usize>(
+        &mut self,
+        columns: &UsedColumns<N>,
+    ) -> bool {
         (self.size, self.rank, self.is_exact) = (0, 0, false);
         if columns.count == 0 || columns.count > NR {
             return false;
@@ -149,7 +152,7 @@ impl<T: Real, const NR: usize> DelassusFactor<T, NR> {
             entries.for_each(|(is_used, entry)| *is_used |= *entry != T::zero());
         }
         let columns = UsedColumns::columns_for_used_entries(is_used);
-        if self.set_basis_columns(&columns) {
+        if self.restart_with_columns(&columns) {
             chosen
                 .iter()
                 .map(|i| from.nonzero_part_of_row(*i))
@@ -261,14 +264,14 @@ impl<T: Real, const NR: usize> DelassusFactor<T, NR> {
         impulses: &SVector<T, NR>,
         w: &mut [T; N],
     ) {
-        self.write_all_velocities(
+        self.scatter_basis_columns(
             &self.velocity_of_impulses(&RowList::new(impulses.data.0[0], T::zero())),
             w,
         );
     }
 
     /// Writes the entries of `w` of all columns.
-    pub(super) fn write_all_velocities<const N: usize>(&self, own: &RowList<T, NR>, w: &mut [T; N]) {
+    pub(super) fn scatter_basis_columns<const N: usize>(&self, own: &RowList<T, NR>, w: &mut [T; N]) {
         for (column, value) in self.columns.iter().zip(own.iter()).take(self.rank) {
             if let Some(entry) = w.get_mut(*column) {
                 *entry = *value;

@@ -299,7 +299,7 @@ impl<'a, T: Real, const NK: usize, const NR: usize> ConvexProblem<'a, T, NK, NR>
             let first = block.push_friction_rows(part.first..part.first + part.count);
             if !bounded {
                 if found.has_positive_normal_impulse || cone.floor > none {
-                    (first..first + part.count).for_each(|i| block.add_entry(i, i, one / weight));
+                    (first..first + part.count).for_each(|i| block.add_to_entry(i, i, one / weight));
                 }
                 continue;
             }
@@ -318,7 +318,7 @@ impl<'a, T: Real, const NK: usize, const NR: usize> ConvexProblem<'a, T, NK, NR>
                 along
                     .iter()
                     .enumerate()
-                    .for_each(|(j, column)| block.add_entry(i, j, *row * *column / found.along));
+                    .for_each(|(j, column)| block.add_to_entry(i, j, *row * *column / found.along));
             }
         }
         block
@@ -408,7 +408,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
             let mut parts = [none; PARTS];
             let others = (k..self.count).filter(|other| self.pressed_by[*other] == k);
             for (part, other) in parts.iter_mut().zip(others) {
-                let tangents = self.rows_of_contact(other).1;
+                let tangents = self.normal_and_friction_rows(other).1;
                 *part = FrictionRows {
                     first: tangents.start,
                     count: tangents.len(),

@@ -138,7 +138,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
             own.size += count;
         }
         let places = own.places;
-        own.copy_selected_weights(self, places.get(..own.size).unwrap_or_default());
+        own.copy_selected_delassus_rows(self, places.get(..own.size).unwrap_or_default());
         // A part of the velocities, as an estimate.
         own.velocities = (self.velocities.saturating_mul(own.size) / self.size.max(1)).max(1);
         let start = start.map(|start| {

@@ -66,7 +66,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         let (held, size) = self.rows_with_possible_impulses(kept);
         let mut wanted = RowList::repeat_entry(T::zero());
         for k in (0..self.count).filter(|k| kept[*k] && self.has_gap_function(*k)) {
-            wanted[self.rows_of_contact(k).0] = self.least[k];
+            wanted[self.normal_and_friction_rows(k).0] = self.least[k];
         }
         self.impulses_for_contact_velocities((&held, size), (&self.free, &wanted), equations, PASSES).0
     }
@@ -96,7 +96,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     fn rows_with_possible_impulses(&self, kept: &TotalArray<bool, NK>) -> (RowList<usize, NR>, usize) {
         let (mut held, mut size) = (RowList::repeat_entry(0), 0);
         for k in (0..self.count).filter(|k| self.step[*k] > T::zero() && kept[*k]) {
-            let (n, _) = self.rows_of_contact(k);
+            let (n, _) = self.normal_and_friction_rows(k);
             let holds = self.friction[k] > T::zero();
             for i in self.all_rows_of_contact(k).filter(|i| *i == n || holds) {
                 held[size] = i;
@@ -159,7 +159,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
             if self.step[k] == T::zero() {
                 return true;
             }
-            let (n, _) = self.rows_of_contact(k);
+            let (n, _) = self.normal_and_friction_rows(k);
             let slips = touches[self.contacts[k].0] == Touch::Slips || self.friction[k] == T::zero();
             for i in self.all_rows_of_contact(k).filter(|i| *i == n || !slips) {
                 held[size] = i;
@@ -218,7 +218,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
             let accelerations = self.contact_velocities_after(forces);
             let mut left = RowList::repeat_entry(T::zero());
             for k in 0..self.count {
-                let (n, _) = self.rows_of_contact(k);
+                let (n, _) = self.normal_and_friction_rows(k);
                 for i in self.all_rows_of_contact(k) {
                     left[i] = match i != n && slips[k] {
                         true => -(forces[i] + system[i][n] * forces[n]),
@@ -301,7 +301,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         let mut system = zero_matrix();
         let _ = set_unit_rows(&mut system, self.size);
         for k in 0..self.count {
-            let (n, tangents) = self.rows_of_contact(k);
+            let (n, tangents) = self.normal_and_friction_rows(k);
             let slip_component_at_row = |i: usize| entry_or_zero(rates, places[i]);
             let speed = tangents
                 .clone()
@@ -328,7 +328,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         let reach = (0..self.size).fold(T::zero(), |most, i| most.max(self.delassus_matrix_entry(i, i)));
         let mut system = *system;
         for k in 0..self.count {
-            let (n, _) = self.rows_of_contact(k);
+            let (n, _) = self.normal_and_friction_rows(k);
             for i in self.all_rows_of_contact(k).filter(|i| *i == n || !slips[k]) {
                 system[i][i] += row_regularisation(self.delassus_matrix_entry(i, i), reach);
             }
@@ -350,7 +350,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         let mut system = self.contact_mode_system_matrix(&slips, rates);
         let mut wanted = TotalArray::repeat_entry([T::zero(); NR]);
         for k in 0..self.count {
-            let (n, _) = self.rows_of_contact(k);
+            let (n, _) = self.normal_and_friction_rows(k);
             for i in self.all_rows_of_contact(k).filter(|i| *i == n || !slips[k]) {
                 if let Some(wanted) = wanted[i].get_mut(places[i]) {
                     *wanted = -T::one();
@@ -429,14 +429,18 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         let mut ends = set_unit_rows(matrix, self.basis.column_count());
         let reach = (0..self.size).fold(T::zero(), |most, i| most.max(self.delassus_matrix_entry(i, i)));
         for k in (0..self.count).filter(|k| self.step[*k] > T::zero()) {
-            let (n, _) = self.rows_of_contact(k);
+            let (n, _) = self.normal_and_friction_rows(k);
             let holds = self.friction[k] > T::zero();
             let mut rows = self.all_rows_of_contact(k).filter(|i| *i == n || holds);
             let Some(first) = rows.next() else { continue };
             let mut block = ImpulseDerivativeBlock::new(first);
             rows.for_each(|i| _ = block.push_friction_rows(i..i + 1));
             for (j, i) in self.all_rows_of_contact(k).filter(|i| *i == n || holds).enumerate() {
-                block.add_entry(j, j, T::one() / row_regularisation(self.delassus_matrix_entry(i, i), reach));
+                block.add_to_entry(
+                    j,
+                    j,
+                    T::one() / row_regularisation(self.delassus_matrix_entry(i, i), reach),
+                );
             }
             self.basis.add_projected_block(&block, matrix, &mut ends);
         }

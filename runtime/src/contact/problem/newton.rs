@@ -118,9 +118,13 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         let ImpulseTrial { impulses, left, worst, .. } = &trial;
         let half = epsilon::<T>().sqrt();
         let little = half * half.sqrt();
-        let pressed = (0..self.count)
-            .filter(|k| self.has_gap_function(*k) && impulses[self.rows_of_contact(*k).0] > T::zero());
-        if pressed.map(|k| self.free[self.rows_of_contact(k).0].abs() * little).all(|most| worst.0 <= most) {
+        let pressed = (0..self.count).filter(|k| {
+            self.has_gap_function(*k) && impulses[self.normal_and_friction_rows(*k).0] > T::zero()
+        });
+        if pressed
+            .map(|k| self.free[self.normal_and_friction_rows(k).0].abs() * little)
+            .all(|most| worst.0 <= most)
+        {
             return trial;
         }
         let change = self.newton_step(&trial, matrix);
@@ -159,23 +163,23 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     fn derivative_block(&self, trial: &ImpulseTrial<T, NK, NR>, k: usize) -> ImpulseDerivativeBlock<T> {
         let presses = self.has_positive_normal_impulse(trial, k);
         let pressed = if presses { self.impulse_stiffness(k) } else { T::zero() };
-        let mut block = ImpulseDerivativeBlock::new(self.rows_of_contact(k).0);
-        block.add_entry(0, 0, pressed);
+        let mut block = ImpulseDerivativeBlock::new(self.normal_and_friction_rows(k).0);
+        block.add_to_entry(0, 0, pressed);
         // Friction moments follow their contact.
         for part in (k..self.count.min(k + PARTS)).filter(|part| self.pressed_by[*part] == k) {
-            let tangents = self.rows_of_contact(part).1;
+            let tangents = self.normal_and_friction_rows(part).1;
             match trial.modes[part].1 {
                 ContactMode::Open => {}
                 ContactMode::Stick => {
                     let (factor, first) =
                         (self.impulse_stiffness(part), block.push_friction_rows(tangents.clone()));
-                    (first..first + tangents.len()).for_each(|i| block.add_entry(i, i, factor));
+                    (first..first + tangents.len()).for_each(|i| block.add_to_entry(i, i, factor));
                 }
                 ContactMode::Slip { size, direction } => {
                     let first = block.push_friction_rows(tangents.clone());
                     // The friction at its bound follows the normal impulse.
                     for (i, d) in (first..first + tangents.len()).zip(direction) {
-                        block.add_entry(i, 0, pressed * self.friction[part] * d);
+                        block.add_to_entry(i, 0, pressed * self.friction[part] * d);
                     }
                     let (bound, factor) = self.sliding_bound_and_factor(trial, part, size);
                     if tangents.len() == 2 && bound > T::zero() {
@@ -193,7 +197,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         let ImpulseTrial { impulses, rates: now, modes, .. } = trial;
         let mut changes = RowList::repeat_entry(T::zero());
         for k in 0..self.count {
-            let (n, tangents) = self.rows_of_contact(k);
+            let (n, tangents) = self.normal_and_friction_rows(k);
             if self.has_gap_function(k) {
                 changes[n] = match self.has_positive_normal_impulse(trial, k) {
                     true => -(now[n] - self.least[k] + rates[n]) * self.impulse_stiffness(k),

@@ -125,7 +125,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     /// Projects impulses onto their friction cones, from which rounding may have moved them.
     fn project_onto_cones(&self, mut impulses: RowList<T, NR>) -> RowList<T, NR> {
         for k in 0..self.count {
-            let (n, tangents) = self.rows_of_contact(k);
+            let (n, tangents) = self.normal_and_friction_rows(k);
             impulses[n] = positive_part(impulses[n]);
             let most = self.friction[k] * self.friction_bounding_impulse(k, impulses[n]);
             let size = tangents.clone().fold(T::zero(), |sum, i| sum + impulses[i] * impulses[i]).sqrt();
@@ -212,7 +212,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         equations: &mut ImpulseEquations<T, NR>,
     ) -> ImpulseTrial<T, NK, NR> {
         let approach = self.contact_mask_of_condition(|k| {
-            self.free[self.rows_of_contact(k).0] < self.least[self.pressed_by[k]]
+            self.free[self.normal_and_friction_rows(k).0] < self.least[self.pressed_by[k]]
         });
         let stuck = self.evaluate_impulse_trial(self.enforcing_impulses_with_workspace(&approach, equations));
         // Nearly dependent rows may have impulses that are worse than none.
@@ -321,7 +321,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
             for k in (0..self.count)
                 .filter(|k| self.has_gap_function(*k) && self.step[*k] > T::zero() && !is_in[*k])
             {
-                let short = rates[self.rows_of_contact(k).0] - self.least[k];
+                let short = rates[self.normal_and_friction_rows(k).0] - self.least[k];
                 if short < entering.0 {
                     entering = (short, Some(k));
                 }
@@ -333,15 +333,17 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
                 // How far the way there leads until the first would pull.
                 let mut part = T::one();
                 for k in (0..self.count).filter(|k| is_in[*k]) {
-                    let (now, then) =
-                        (impulses[self.rows_of_contact(k).0], wanted[self.rows_of_contact(k).0]);
+                    let (now, then) = (
+                        impulses[self.normal_and_friction_rows(k).0],
+                        wanted[self.normal_and_friction_rows(k).0],
+                    );
                     if then <= T::zero() {
                         part = part.min(if now > T::zero() { now / (now - then) } else { T::zero() });
                     }
                 }
                 let mut is_done = true;
                 for k in 0..self.count {
-                    let n = self.rows_of_contact(k).0;
+                    let n = self.normal_and_friction_rows(k).0;
                     if !is_in[k] {
                         continue;
                     }
@@ -449,7 +451,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     fn steps_for_simultaneous_updates(&self) -> RowList<T, NR> {
         let mut steps = RowList::<T, NR>::repeat_entry(T::zero());
         for k in (0..self.count).filter(|k| self.step[*k] > T::zero()) {
-            let (n, tangents) = self.rows_of_contact(k);
+            let (n, tangents) = self.normal_and_friction_rows(k);
             let block_row_norm = |rows: Range<usize>| {
                 (0..self.count).fold(T::zero(), |sum, other| {
                     let block_norm = |columns: Range<usize>| {
@@ -460,7 +462,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
                         });
                         square.sqrt()
                     };
-                    let (normal, along) = self.rows_of_contact(other);
+                    let (normal, along) = self.normal_and_friction_rows(other);
                     let pressed =
                         if self.has_gap_function(other) { block_norm(normal..normal + 1) } else { T::zero() };
                     sum + pressed + block_norm(along)
@@ -485,13 +487,13 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
             let rates = self.contact_velocities_after(&ahead);
             let mut next = RowList::repeat_entry(T::zero());
             for k in (0..self.count).filter(|k| self.step[*k] > T::zero()) {
-                let (n, _) = self.rows_of_contact(k);
+                let (n, _) = self.normal_and_friction_rows(k);
                 if self.has_gap_function(k) {
                     next[n] = positive_part(ahead[n] - steps[n] * (rates[n] - self.least[k]));
                 }
             }
             for k in (0..self.count).filter(|k| self.step[*k] > T::zero()) {
-                let (n, tangents) = self.rows_of_contact(k);
+                let (n, tangents) = self.normal_and_friction_rows(k);
                 let most = self.friction[k] * self.friction_bounding_impulse(k, next[n]);
                 let mut wanted = [T::zero(); 2];
                 for (w, i) in wanted.iter_mut().zip(tangents.clone()) {

@@ -45,7 +45,7 @@ pub(in super::super) struct SlipRotationImpulses<T, const NR: usize> {
 }
 
 /// Linear equations `system δΛ = wanted δE` of the impulses, with the contact velocities `E` without them.
-pub(in super::super) struct LinearisedImpulses<T, const NR: usize> {
+pub(in super::super) struct LinearisedImpulseEquations<T, const NR: usize> {
     system: ContactRowMatrix<T, NR>,
     wanted: ContactRowMatrix<T, NR>,
     /// Derivative of each friction impulse of a sliding contact with respect to the coefficient of friction,
@@ -60,7 +60,7 @@ pub(in super::super) struct LinearisedImpulses<T, const NR: usize> {
     size: usize,
 }
 
-impl<T: Real, const NR: usize> LinearisedImpulses<T, NR> {
+impl<T: Real, const NR: usize> LinearisedImpulseEquations<T, NR> {
     /// Returns equations of impulses that are constant.
     fn new(places: RowList<usize, NR>, size: usize) -> Self {
         let (mut system, pivots) = (zero_matrix(), TotalArray::repeat_entry(0));
@@ -147,9 +147,9 @@ impl<T: Real, const NR: usize> LinearisedImpulses<T, NR> {
     }
 }
 
-/// Equations of impulses with their right-hand sides ([`LinearisedImpulses::impulse_changes`]).
+/// Equations of impulses with their right-hand sides ([`LinearisedImpulseEquations::impulse_changes`]).
 struct ImpulseChangeEquations<'a, T, const NR: usize, const C: usize> {
-    equations: &'a LinearisedImpulses<T, NR>,
+    equations: &'a LinearisedImpulseEquations<T, NR>,
     rates: &'a SMatrix<T, NR, C>,
     friction: Option<&'a SMatrix<T, NR, C>>,
 }
@@ -210,7 +210,10 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     ///
     /// The contact with Poisson's restitution, or the one that violates the contact conditions most if the
     /// violation is larger than the errors of the search.
-    pub(in super::super) fn check_derivatives(&self, impulses: &RowList<T, NR>) -> Result<(), usize> {
+    pub(in super::super) fn check_impulses_are_differentiable(
+        &self,
+        impulses: &RowList<T, NR>,
+    ) -> Result<(), usize> {
         if self.is_compressed {
             let is_contact_compressed = |k: &usize| self.compression[self.rows[*k].first] > T::zero();
             return Err(self.contacts[(0..self.count).find(is_contact_compressed).unwrap_or_default()].0);
@@ -224,14 +227,14 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     pub(in super::super) fn linearised_impulse_equations(
         &self,
         impulses: &RowList<T, NR>,
-    ) -> (LinearisedImpulses<T, NR>, bool) {
+    ) -> (LinearisedImpulseEquations<T, NR>, bool) {
         let rates = self.contact_velocities_after(impulses);
         let modes = self.natural_map_modes(&self.friction, impulses, &rates);
         let still = self.contact_velocity_rounding_error(impulses);
-        let mut equations = LinearisedImpulses::new(self.places, self.size);
+        let mut equations = LinearisedImpulseEquations::new(self.places, self.size);
         let (mut held, mut is_whole) = (ContactRowMask::repeat_entry(false), true);
         for k in (0..self.count).filter(|k| self.step[*k] > T::zero()) {
-            let (n, tangents) = self.rows_of_contact(k);
+            let (n, tangents) = self.normal_and_friction_rows(k);
             if self.has_gap_function(k) {
                 held[n] = modes[k].0 > T::zero();
                 is_whole &= held[n];
@@ -264,9 +267,9 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         &self,
         k: usize,
         (direction, ratio): ([T; 2], T),
-        LinearisedImpulses { system, wanted, .. }: &mut LinearisedImpulses<T, NR>,
+        LinearisedImpulseEquations { system, wanted, .. }: &mut LinearisedImpulseEquations<T, NR>,
     ) {
-        let (n, tangents) = self.rows_of_contact(k);
+        let (n, tangents) = self.normal_and_friction_rows(k);
         for (i, d) in tangents.clone().zip(direction) {
             system[i][n] -= self.friction[k] * d;
             // Along a single tangent the direction does not rotate.
@@ -285,8 +288,8 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     pub(in super::super) fn velocity_preserving_equations(
         &self,
         held: &ContactRowMask<NR>,
-    ) -> LinearisedImpulses<T, NR> {
-        let mut equations = LinearisedImpulses::new(self.places, self.size);
+    ) -> LinearisedImpulseEquations<T, NR> {
+        let mut equations = LinearisedImpulseEquations::new(self.places, self.size);
         self.factorise_held_row_equations(held, &mut equations);
         equations
     }
@@ -295,7 +298,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     pub(in super::super) fn possible_impulse_row_mask(&self) -> ContactRowMask<NR> {
         let mut rows = ContactRowMask::repeat_entry(false);
         for k in (0..self.count).filter(|k| self.step[*k] > T::zero()) {
-            let (n, _) = self.rows_of_contact(k);
+            let (n, _) = self.normal_and_friction_rows(k);
             self.all_rows_of_contact(k).for_each(|i| rows[i] = i == n || self.friction[k] > T::zero());
         }
         rows
@@ -319,7 +322,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     fn factorise_held_row_equations(
         &self,
         held: &ContactRowMask<NR>,
-        equations: &mut LinearisedImpulses<T, NR>,
+        equations: &mut LinearisedImpulseEquations<T, NR>,
     ) {
         let mut count = 0;
         for i in (0..self.size).filter(|i| held[*i]) {
@@ -355,7 +358,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         };
         let half = constant::<T>(0.5);
         for k in (0..self.count).filter(|k| self.friction[*k] > T::zero()) {
-            let (n, tangents) = self.rows_of_contact(k);
+            let (n, tangents) = self.normal_and_friction_rows(k);
             let largest = self.friction[k] * impulses[n];
             let speed = tangents.clone().fold(T::zero(), |sum, i| sum + slip[i] * slip[i]).sqrt();
             let deviation_from_sliding_friction = |i: usize| impulses[i] + largest * slip[i] / speed;

@@ -105,7 +105,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         solve_by_cholesky_factor(&matrix, rank, &mut rest);
         rest.iter_mut().take(rank).for_each(|x| *x *= half);
         all.iter_mut().for_each(|x| *x *= half);
-        self.basis.write_all_velocities(&rest, &mut all);
+        self.basis.scatter_basis_columns(&rest, &mut all);
         (SVector::from(factor.solve_upper(all)), self.basis.rates_of_velocity(&rest))
     }
 
@@ -154,7 +154,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     ) -> Option<RowList<T, NR>> {
         let (mut turned, mut is_any) = (RowList::repeat_entry(T::zero()), false);
         for k in (0..self.count).filter(|k| self.friction[*k] > T::zero()) {
-            let (n, tangents) = self.rows_of_contact(k);
+            let (n, tangents) = self.normal_and_friction_rows(k);
             let largest = self.friction[k] * impulses[n];
             let slip_at_end = |i: usize| self.free[i] + entry_or_zero(rates, self.places[i]);
             let speed =

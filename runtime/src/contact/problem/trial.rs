@@ -99,7 +99,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         impulses: &RowList<T, NR>,
         rates: &RowList<T, NR>,
     ) -> (T, ContactMode<T>) {
-        let (n, tangents) = self.rows_of_contact(k);
+        let (n, tangents) = self.normal_and_friction_rows(k);
         let step = self.step[k] * self.scale;
         let normal = impulses[n] - self.normal_impulse_step(k) * (rates[n] - self.least[self.pressed_by[k]]);
         let bearing = self.friction_bounding_impulse(k, normal);
@@ -128,7 +128,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         impulses: &RowList<T, NR>,
         rates: &RowList<T, NR>,
     ) -> [T; 3] {
-        let (n, tangents) = self.rows_of_contact(k);
+        let (n, tangents) = self.normal_and_friction_rows(k);
         let pressed = if self.has_gap_function(k) { impulses[n] - positive_part(normal) } else { T::zero() };
         let mut map = [pressed, T::zero(), T::zero()];
         for ((c, entry), i) in map.iter_mut().skip(1).enumerate().zip(tangents) {

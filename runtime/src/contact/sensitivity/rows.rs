@@ -1,6 +1,6 @@
 //! Derivatives at the rows of contact velocities.
 
-use super::super::problem::LinearisedImpulses;
+use super::super::problem::LinearisedImpulseEquations;
 use super::super::selection::ContactSelection;
 use crate::Real;
 use crate::blocks::{add_product, zeros};
@@ -56,7 +56,7 @@ impl<T: Real, const CR: usize, const NV: usize, const NU: usize> ContactRowDeriv
     /// the rows of friction.
     pub(super) fn impulse_derivatives(
         &self,
-        equations: &LinearisedImpulses<T, CR>,
+        equations: &LinearisedImpulseEquations<T, CR>,
         friction: Option<&SMatrix<T, CR, NU>>,
     ) -> Self {
         let Self { by_q, by_v, by_u } = self;

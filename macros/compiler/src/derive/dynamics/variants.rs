@@ -70,7 +70,7 @@ impl<'g> Variants<'g> {
 
     pub fn store_cheapest_bias_program(&mut self) {
         let (variant, program) =
-            self.specialisation.cheapest_candidate(self.inverse_dynamics_candidates(false));
+            self.specialisation.cheapest_program_with_index(self.inverse_dynamics_candidates(false));
         let simd = self
             .inverse_dynamics_in_limb_lanes(false)
             .map(|list| self.specialisation.candidate_with_size(list));
@@ -219,7 +219,7 @@ impl<'g> Variants<'g> {
 
 /// Returns the number of multipliers whose individual accelerations are outputs.
 fn multiplier_acceleration_column_count(model: &Model<'_>) -> usize {
-    if model.is_overconstrained() { model.constraints.len() } else { 0 }
+    if model.has_unpruned_redundancy() { model.constraints.len() } else { 0 }
 }
 
 impl<'g> Variants<'g> {
@@ -266,7 +266,7 @@ impl<'g> Variants<'g> {
     ) -> Program {
         self.cheapest_program(role, |model| {
             let rows = constraints::jacobian(model);
-            if model.is_overconstrained() {
+            if model.has_unpruned_redundancy() {
                 let mass = crba::mass_matrix(model, &self.joints);
                 return constraints::minimum_norm_terms(&mass, &rows, force.to_vec(), bias, &self.joints);
             }

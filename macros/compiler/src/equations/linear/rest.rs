@@ -95,7 +95,7 @@ pub fn check_equilibrium<'g>(
     normal: &mut NormalFormCache<'g>,
     cx: &mut Diagnostics,
 ) -> Option<EquilibriumValues<'g>> {
-    match find_rest_state(model, at, balance, normal) {
+    match verified_equilibrium_values(model, at, balance, normal) {
         Ok(rest) => Some(rest),
         Err((what, help)) => {
             cx.report_error(at.place.clone(), what).add_help(help);
@@ -104,7 +104,7 @@ pub fn check_equilibrium<'g>(
     }
 }
 
-fn find_rest_state<'g>(
+fn verified_equilibrium_values<'g>(
     model: &Model<'g>,
     at: &Equilibrium<'g>,
     balance: &[Expr<'g>],
@@ -130,7 +130,7 @@ fn find_rest_state<'g>(
             "declare the equilibrium away from it, or round the corner off",
         ));
     }
-    check_persistence(model, at, &rest, &kept, normal)?;
+    check_stationarity(model, at, &rest, &kept, normal)?;
     let mut left = rest.evaluate_at_equilibrium(balance);
     if !model.constraints.is_empty() {
         (rest.multipliers, left) = solve_for_multipliers(model, &rest, balance).ok_or_else(|| {
@@ -154,7 +154,7 @@ fn find_rest_state<'g>(
 }
 
 /// Checks that the constraints are satisfied and remain so at rest, and that the states are constant.
-fn check_persistence<'g>(
+fn check_stationarity<'g>(
     model: &Model<'g>,
     at: &Equilibrium<'g>,
     rest: &EquilibriumValues<'g>,
@@ -324,7 +324,7 @@ fn solve_for_multipliers<'g>(
     let mut left: Vec<usize> = (0..rows.len()).collect();
     let mut pivots = Vec::new();
     for column in 0..count {
-        let pivot_magnitude = |row: usize| minimum_magnitude(rows[row][column]);
+        let pivot_magnitude = |row: usize| minimum_sampled_magnitude(rows[row][column]);
         let best = left.iter().copied().max_by(|a, b| pivot_magnitude(*a).total_cmp(&pivot_magnitude(*b)))?;
         if pivot_magnitude(best) < ROUNDING {
             return None;
@@ -346,7 +346,7 @@ fn solve_for_multipliers<'g>(
 }
 
 /// Returns the minimum magnitude of an expression over several random values of the parameters.
-fn minimum_magnitude(e: Expr<'_>) -> f64 {
+fn minimum_sampled_magnitude(e: Expr<'_>) -> f64 {
     let tape = Tape::new(&[e]);
     values_at_random_parameters(|seed| Some(tape.evaluate_at(&|s| random_parameter(s, seed))[0]))
         .into_iter()

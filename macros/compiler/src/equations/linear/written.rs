@@ -1,7 +1,7 @@
 //! Formats linear equations as plain text, LaTeX and MathML, with the user's names.
 
 use super::super::written::{
-    coordinate_rate_flags, name_and_derivative_order as name_of, typeset_names_with_extra_names,
+    coordinate_rate_velocity_flags, name_and_derivative_order as name_of, typeset_names_with_extra_names,
     wrap_at_page_width,
 };
 use super::LinearisedEquations;
@@ -270,7 +270,7 @@ fn zero_roots_sentence(words: &SymbolNames<'_, '_>, stability: &Stability) -> St
 /// Returns the sentences of the legend that explain the notation of linear equations.
 fn legend_sentences(words: &SymbolNames<'_, '_>) -> String {
     let model = words.model;
-    let primes = coordinate_rate_flags(model).iter().any(|plain| *plain);
+    let primes = coordinate_rate_velocity_flags(model).iter().any(|plain| *plain);
     let mut sentences = Vec::new();
     if primes || !words.at.states.is_empty() {
         sentences.push(

@@ -18,8 +18,8 @@ fn free_body_prints_eulers_equations_under_any_load() {
     let text = call_with_parsed_model("0 * z", SATELLITE, |model| {
         let joints = crate::kinematics::joints_of_model(&model);
         let mass = crba::mass_matrix(&model, &joints);
-        assert!(derive(&model, &joints, &mass, None, &Limits::READABLE).is_none());
-        let e = derive_inertial_terms(&model, &joints, &mass, &Limits::READABLE).expect("short");
+        assert!(derive(&model, &joints, &mass, None, &EquationSizeLimits::READABLE).is_none());
+        let e = derive_inertial_terms(&model, &joints, &mass, &EquationSizeLimits::READABLE).expect("short");
         check_values_of_printed_equations(&model, &e);
         crate::equations_as_text(&model)
     });

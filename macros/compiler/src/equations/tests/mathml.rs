@@ -74,11 +74,11 @@ fn equations_of_page(page: &str) -> Vec<(String, String)> {
 fn check_mathml_page(model: &Model<'_>) {
     let joints = crate::kinematics::joints_of_model(model);
     let mass = crba::mass_matrix(model, &joints);
-    let e = derive(model, &joints, &mass, None, &Limits::READABLE).expect("small");
+    let e = derive(model, &joints, &mass, None, &EquationSizeLimits::READABLE).expect("small");
     let written = format_equations(model, &e);
     let (plain, page) = (sides_of_equations(&written.plain), equations_of_page(&written.mathml));
     assert_eq!(plain.len(), page.len(), "{}", written.mathml);
-    let rates = written::coordinate_rate_flags(model);
+    let rates = written::coordinate_rate_velocity_flags(model);
     let names = written::typeset_names_with_extra_names(model, &[]);
     let symbols = (0..model.parameters.len())
         .map(Quantity::Parameter)

@@ -72,7 +72,7 @@ fn all_printed_forms_agree_for_random_mechanisms() {
         call_with_parsed_model("-g * z", &item, |model| {
             let joints = crate::kinematics::joints_of_model(&model);
             let mass = crba::mass_matrix(&model, &joints);
-            if derive(&model, &joints, &mass, None, &Limits::READABLE).is_some() {
+            if derive(&model, &joints, &mass, None, &EquationSizeLimits::READABLE).is_some() {
                 check_against_recursive_algorithms(&model);
                 compared[0] += 1;
             }

@@ -313,8 +313,8 @@ impl CasadiWriter<'_> {
              {{\n    (void)(arg);\n    (void)(iw);\n    (void)(mem);\n{body}{}    (void)(w);\n    return \
              0;\n}}\n\n{}{}EXTERNAL({name}, {}, {}, {lengths}{})\n",
             f.body,
-            names_and_shapes(name, "in", &inputs),
-            names_and_shapes(name, "out", &outputs),
+            name_and_sparsity_arrays(name, "in", &inputs),
+            name_and_sparsity_arrays(name, "out", &outputs),
             inputs.len(),
             outputs.len(),
             f.work
@@ -324,7 +324,7 @@ impl CasadiWriter<'_> {
 
 /// Returns the arrays of names and sparsity patterns: rows, columns, and 1 for a dense matrix or the column
 /// offsets of an empty one with a single column.
-fn names_and_shapes(function: &str, side: &str, entries: &[&MatrixArgument]) -> String {
+fn name_and_sparsity_arrays(function: &str, side: &str, entries: &[&MatrixArgument]) -> String {
     // Arrays in C have at least one element.
     let join_or_placeholder =
         |all: Vec<String>, none: &str| if all.is_empty() { none.to_string() } else { all.join(", ") };

@@ -1,13 +1,18 @@
 //! Results that consist of several matrices, and results that loops compose at run time.
 
-use super::super::body::{Scope, write_program};
+use super::super::body::{CBodyScope, write_program};
 use super::super::mechanism::{ExportedMechanism, is_zero_output};
 use crate::catalogue::{InverseForm, Shape};
 use crate::derive::Function;
 use std::fmt::Write;
 
 /// Writes the body of a C function whose result is assembled from the outputs of its program.
-pub fn write_composed_body(body: &mut String, f: &Function, scope: &Scope<'_>, i: &ExportedMechanism<'_>) {
+pub fn write_composed_body(
+    body: &mut String,
+    f: &Function,
+    scope: &CBodyScope<'_>,
+    i: &ExportedMechanism<'_>,
+) {
     let write_program_to_targets =
         |body: &mut String, assembled_output_element: &dyn Fn(usize) -> Option<String>| {
             write_program(body, &f.program, scope, assembled_output_element);
@@ -41,7 +46,7 @@ pub fn write_composed_body(body: &mut String, f: &Function, scope: &Scope<'_>, i
             inverse.write_completion_of_inverse(body);
             write_conversion_to_acceleration_derivatives(body, f, n);
         }
-        Shape::CalledForward(n) => write_composed_forward_derivatives(body, f, n, scope, i),
+        Shape::ForwardDerivativesByCalls(n) => write_composed_forward_derivatives(body, f, n, scope, i),
         Shape::Linear(n, m) => {
             if n > 0 {
                 let _ = writeln!(body, "    double by_q[{0}], by_v[{0}], inverse[{0}];", n * n);
@@ -162,7 +167,7 @@ fn write_composed_forward_derivatives(
     body: &mut String,
     f: &Function,
     n: usize,
-    scope: &Scope<'_>,
+    scope: &CBodyScope<'_>,
     i: &ExportedMechanism<'_>,
 ) {
     let _ = writeln!(
@@ -203,7 +208,7 @@ fn write_linear_system_by_calls(
     body: &mut String,
     f: &Function,
     (n, m): (usize, usize),
-    scope: &Scope<'_>,
+    scope: &CBodyScope<'_>,
     i: &ExportedMechanism<'_>,
 ) {
     let _ = writeln!(

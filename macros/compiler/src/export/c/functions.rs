@@ -1,6 +1,6 @@
 //! Definitions of derived functions in C.
 
-use super::super::body::{MISSING, Scope, write_program};
+use super::super::body::{CBodyScope, MISSING, write_program};
 use super::super::mechanism::ExportedMechanism;
 use super::super::signatures::{ArrayArgument, ExportedSignature, public_identifier};
 use super::super::tokens::contains_word;
@@ -46,15 +46,20 @@ pub fn function_definition(i: &ExportedMechanism<'_>, f: &ExportedSignature, bod
 /// values in registers.
 pub fn definitions_of_derived_functions(i: &ExportedMechanism<'_>, is_late: bool) -> String {
     let mut text = String::new();
-    let definition_of = |f: &Function| {
+    let derived_function_definition = |f: &Function| {
         function_definition(i, &ExportedSignature::from_function(f, i), &derived_function_body(i, f, is_late))
     };
-    i.hidden.iter().for_each(|f| text.push_str(&format!("static {}\n", definition_of(f))));
-    i.public.iter().for_each(|f| text.push_str(&format!("{}\n", definition_of(f))));
+    i.hidden.iter().for_each(|f| text.push_str(&format!("static {}\n", derived_function_definition(f))));
+    i.public.iter().for_each(|f| text.push_str(&format!("{}\n", derived_function_definition(f))));
     let signatures = i.functions.iter().skip(i.public.len());
     for (f, signature) in i.reactions.iter().zip(signatures) {
         let body = reaction_body(i, f);
-        let _ = writeln!(text, "static {}\n{}", definition_of(f), function_definition(i, signature, &body));
+        let _ = writeln!(
+            text,
+            "static {}\n{}",
+            derived_function_definition(f),
+            function_definition(i, signature, &body)
+        );
     }
     text
 }
@@ -64,7 +69,7 @@ fn derived_function_body(i: &ExportedMechanism<'_>, f: &Function, is_late: bool)
     let mut body = String::new();
     let arguments: Vec<Argument> =
         f.arguments.iter().copied().chain(CalledFunction::ALL.map(Argument::Called)).collect();
-    let scope = Scope { arguments: &arguments, parameters: &i.parameters, tables: &i.tables, is_late };
+    let scope = CBodyScope { arguments: &arguments, parameters: &i.parameters, tables: &i.tables, is_late };
     CalledFunction::ALL.into_iter().for_each(|called| write_call_if_needed(&mut body, f, called, i));
     match f.shape {
         Shape::Scalar => {
@@ -75,7 +80,7 @@ fn derived_function_body(i: &ExportedMechanism<'_>, f: &Function, is_late: bool)
         | Shape::Forward(_)
         | Shape::Linear(..)
         | Shape::Accelerated(_)
-        | Shape::CalledForward(_)
+        | Shape::ForwardDerivativesByCalls(_)
         | Shape::CalledLinear(..) => write_composed_body(&mut body, f, &scope, i),
         _ => {
             let signature = ExportedSignature::from_function(f, i);

@@ -1,6 +1,6 @@
 //! Functions that templates in C define: of the configuration manifold, of steps and of named frames.
 
-use super::super::body::{Scope, write_program};
+use super::super::body::{CBodyScope, write_program};
 use super::super::handwritten::{LIMITS, joint_manifold_signatures};
 use super::super::mechanism::{ExportedMechanism, is_zero_output};
 use super::super::signatures::ExportedSignature;
@@ -121,7 +121,11 @@ pub fn kinematic_definitions(i: &ExportedMechanism<'_>, is_late: bool) -> String
         let has_name_without_prefix =
             |f: &&ExportedSignature| f.name.strip_prefix("joints_").unwrap_or(&f.name) == name;
         if let Some(f) = functions.iter().rev().find(has_name_without_prefix) {
-            let _ = writeln!(text, "{hidden}{}", function_definition(i, f, &chart_statements(i, name)));
+            let _ = writeln!(
+                text,
+                "{hidden}{}",
+                function_definition(i, f, &manifold_function_statements(i, name))
+            );
         }
     }
     let mut write =
@@ -136,7 +140,7 @@ pub fn kinematic_definitions(i: &ExportedMechanism<'_>, is_late: bool) -> String
 }
 
 /// Returns the statements of a function of the configuration manifold, joint by joint.
-pub fn chart_statements(i: &ExportedMechanism<'_>, name: &str) -> String {
+pub fn manifold_function_statements(i: &ExportedMechanism<'_>, name: &str) -> String {
     let mut text = String::new();
     for chart in &i.output.charts {
         let (kind, q, v) = match *chart {
@@ -175,7 +179,7 @@ fn limits_definition(i: &ExportedMechanism<'_>) -> String {
         let _ = writeln!(body, "        {}[k] = {sign}HUGE_VAL;", array.name);
     }
     body.push_str("    }\n");
-    let scope = Scope { arguments: &[], parameters: &i.parameters, tables: &i.tables, is_late: false };
+    let scope = CBodyScope { arguments: &[], parameters: &i.parameters, tables: &i.tables, is_late: false };
     write_program(&mut body, &limits.program, &scope, &|k| places.get(k).cloned());
     function_definition(i, signature, &body) + "\n"
 }
@@ -260,7 +264,7 @@ fn recursion_step_definition(
     programs: &[Option<&Program>],
     is_late: bool,
 ) -> String {
-    let scope = Scope { arguments, parameters: &i.parameters, tables: &i.tables, is_late };
+    let scope = CBodyScope { arguments, parameters: &i.parameters, tables: &i.tables, is_late };
     let mut body = String::new();
     for (k, program) in programs.iter().enumerate() {
         let _ = writeln!(body, "    case {k}: {{");

@@ -17,6 +17,6 @@ pub(super) use functions::program_of_own_results;
 pub(super) use header::{
     c_parameter_type_definitions, frame_index_constants, list_state_entries, size_macros,
 };
-pub(super) use kinematics::chart_statements;
+pub(super) use kinematics::manifold_function_statements;
 pub(super) use source::definitions_for_kernels;
 pub use source::{CSourceFiles, export_c_source};

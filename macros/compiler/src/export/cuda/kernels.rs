@@ -6,7 +6,7 @@ use super::super::template::TemplateValues;
 use crate::catalogue::{GeneratedId, InverseForm};
 
 /// Products of row vectors with the Jacobians of inverse and forward dynamics.
-pub struct JacobianProducts<'a> {
+pub struct VectorJacobianProducts<'a> {
     i: &'a ExportedMechanism<'a>,
     has: [bool; 2],
     /// Whether a function returns all columns of the inverse mass matrix without further steps.
@@ -16,9 +16,9 @@ pub struct JacobianProducts<'a> {
 
 const NAMES: [&str; 2] = ["inverse_dynamics_vjp", "forward_dynamics_vjp"];
 
-impl<'a> JacobianProducts<'a> {
+impl<'a> VectorJacobianProducts<'a> {
     /// Determines the vector–Jacobian products that a mechanism has.
-    pub fn from_mechanism(i: &'a ExportedMechanism<'a>) -> JacobianProducts<'a> {
+    pub fn from_mechanism(i: &'a ExportedMechanism<'a>) -> VectorJacobianProducts<'a> {
         let has_function = |name: &str| i.signature(name).is_some();
         let is_plain = i.model.acceleration_forces.is_empty();
         let has_inverse = has_function("inverse_dynamics_derivatives") && has_function("mass_matrix");
@@ -26,7 +26,7 @@ impl<'a> JacobianProducts<'a> {
             has_inverse && has_function("forward_dynamics") && has_function("mass_matrix_inverse");
         let has = [has_inverse, has_forward].map(|has| has && is_plain && i.nv() > 0);
         let inverse = i.find_derived_function(GeneratedId::MassMatrixInverse);
-        JacobianProducts {
+        VectorJacobianProducts {
             i,
             has: [0, 1].map(|k| has[k] && !has_function(NAMES[k])),
             explicit_inverse: inverse.is_some_and(|f| matches!(f.structure.inverse, InverseForm::Explicit)),

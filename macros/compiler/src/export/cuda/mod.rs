@@ -51,7 +51,7 @@ pub fn export_cuda_kernels(
     options: &Options,
 ) -> Result<KernelFiles, ExportObstacle> {
     let i = ExportedMechanism::new(model, output, tables, options)?;
-    let products = kernels::JacobianProducts::from_mechanism(&i);
+    let products = kernels::VectorJacobianProducts::from_mechanism(&i);
     let functions = i.functions.iter().cloned().chain(products.product_signatures()).collect();
     let scalar = if options.single { "float" } else { "double" };
     let kernels = Kernels { i: &i, functions, scalar };

@@ -39,7 +39,7 @@ pub fn model_header(
     w.write_kinematics_adapters(model);
     w.write_dynamics_adapters(variables);
     w.write_constraint_adapters(model);
-    w.write_output_adapters(variables);
+    w.write_rate_and_output_adapter(variables);
     if variables.is_differentiable && variables.has_generated_derivatives {
         w.write_derivative_adapters(variables);
     }
@@ -174,7 +174,7 @@ impl HeaderWriter<'_> {
     }
 
     /// Writes the function for the rates of states of first order, outputs and energies.
-    fn write_output_adapters(&mut self, variables: &FmuVariables) {
+    fn write_rate_and_output_adapter(&mut self, variables: &FmuVariables) {
         let mut body = String::new();
         for (k, rate) in variables.rates.iter().enumerate() {
             body.push_str(&self.c_function_call(&rate.name, &[&format!("rates[{k}]")]));
@@ -218,7 +218,7 @@ impl HeaderWriter<'_> {
         let mut body = String::new();
         let all = variables.rates.iter().chain(&variables.outputs);
         for output in all.filter(|output| output.is_differentiable) {
-            body.push_str(&self.result_derivative_statements(output, first));
+            body.push_str(&self.output_derivative_statements(output, first));
             first += output.size;
         }
         let results = ["r_by_q", "r_by_v", "r_by_a", "r_by_u", "r_by_constants"];
@@ -226,7 +226,7 @@ impl HeaderWriter<'_> {
     }
 
     /// Returns the statements for the derivatives of an output, whose first row is `first`.
-    fn result_derivative_statements(&self, output: &OutputFunction, first: usize) -> String {
+    fn output_derivative_statements(&self, output: &OutputFunction, first: usize) -> String {
         let OutputFunction { name, size, .. } = output;
         let columns = [
             ("q", "LW_NV"),

@@ -3,7 +3,7 @@
 //!
 //! Bodies are those in C (`export::c`), converted token by token. WGSL has single precision only.
 
-use super::body::{MISSING, Scope, write_program};
+use super::body::{CBodyScope, MISSING, write_program};
 use super::c::{self, program_of_own_results};
 use super::mechanism::{ExportObstacle, ExportedMechanism, Options};
 use super::signatures::{ArrayArgument, ExportedSignature, python_array_list};
@@ -102,7 +102,7 @@ fn straight_line_functions(
             continue;
         }
         match of_space && f.name == plain_name {
-            true => functions.push((f.clone(), c::chart_statements(i, &f.name))),
+            true => functions.push((f.clone(), c::manifold_function_statements(i, &f.name))),
             false if of_space || f.name == "limits" => {
                 left_out.push(format!("{}: the same for all states", f.name));
             }
@@ -124,7 +124,7 @@ fn straight_line_body(f: &Function, i: &ExportedMechanism<'_>) -> Option<String>
         return None;
     }
     let scope =
-        Scope { arguments: &f.arguments, parameters: &i.parameters, tables: &i.tables, is_late: true };
+        CBodyScope { arguments: &f.arguments, parameters: &i.parameters, tables: &i.tables, is_late: true };
     let signature = ExportedSignature::from_function(f, i);
     let output_target = |k: usize| signature.element_of_output(k).filter(|_| !signature.returns);
     let mut body = String::new();

@@ -14,7 +14,7 @@ pub(super) const OTHER_INPUTS: &str =
 pub(super) const TINY: f64 = 1e-15;
 
 /// Force as an expression of inputs, states, length and rate.
-pub(super) struct ActuatorLaw {
+pub(super) struct SymbolicActuatorLaw {
     place: Place,
     actuator: String,
     /// Inputs: the word that distinguishes each from the others of this actuator, and its unit.
@@ -51,10 +51,10 @@ pub(super) struct ActuatorNames<'n> {
     pub(super) input: &'n dyn Fn(&str) -> String,
 }
 
-impl ActuatorLaw {
+impl SymbolicActuatorLaw {
     /// Returns an actuator law without force, inputs and states.
-    pub(super) fn new(named: &ActuatorNames<'_>, place: &Place) -> ActuatorLaw {
-        ActuatorLaw {
+    pub(super) fn new(named: &ActuatorNames<'_>, place: &Place) -> SymbolicActuatorLaw {
+        SymbolicActuatorLaw {
             place: place.clone(),
             actuator: named.actuator.to_string(),
             inputs: Vec::new(),

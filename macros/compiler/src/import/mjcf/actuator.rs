@@ -4,7 +4,7 @@
 //! zero. The force is `gain · u + b₀ + b₁ length + b₂ rate`, or an expression of states and inputs (MuJoCo,
 //! *Computation*, "Actuation model").
 
-use super::activation::{ActuatorLaw, ActuatorNames, OTHER_INPUTS};
+use super::activation::{ActuatorNames, OTHER_INPUTS, SymbolicActuatorLaw};
 use super::defaults::ElementWithDefaults;
 use super::formula::ActuatorLawExpression;
 use super::law::{ActuatorForceLaw, read_actuator_force};
@@ -181,7 +181,7 @@ impl<'a> MjcfReader<'a> {
     }
 
     /// Adds the inputs, the states and the force of an actuator.
-    fn add_actuator_law(&mut self, name: Name, on: FileForceTarget, law: ActuatorLaw) {
+    fn add_actuator_law(&mut self, name: Name, on: FileForceTarget, law: SymbolicActuatorLaw) {
         for (input, unit) in law.inputs {
             let name = Name { text: input, place: name.place.clone() };
             let on = FileForceTarget::Sum(Vec::new());
@@ -253,7 +253,7 @@ impl<'a> MjcfReader<'a> {
         }
         if let Some(tendon) = element.attribute_text_with_span("tendon", cx) {
             return Some((
-                Tendon::tendon_drive_target(&tendon, tendons, OTHER_INPUTS, cx)?.with_scaled_weights(gear),
+                Tendon::tendon_force_target(&tendon, tendons, OTHER_INPUTS, cx)?.with_scaled_weights(gear),
                 false,
             ));
         }

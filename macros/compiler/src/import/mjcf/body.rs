@@ -4,7 +4,7 @@ use super::defaults::{ElementWithDefaults, read_boolean_attribute};
 use super::frame::read_pose;
 use super::geometry;
 use super::joint::{BodyJoint, IGNORE_PASSIVE, is_joint_element};
-use super::reader::{MjcfReader, assign_mass_properties, origin_of_pose};
+use super::reader::{MjcfReader, assign_mass_properties, origin_from_pose};
 use crate::diag::Place;
 use crate::import::context::{Cx, quote_word};
 use crate::import::element::{
@@ -15,7 +15,7 @@ use crate::import::pose::{
     NumericPose, axis_rotation, matrix_product, matrix_times_vector, vector_sum, vector_times_scalar,
 };
 use crate::import::robot::{FileJoint, FileLimits, MAX_ELEMENTS, massless_link, unused_name};
-use crate::syntax::{Base, BinaryOp, Expr, ExprKind, GROUND, InertiaOption, JointKind, Name};
+use crate::syntax::{BaseAttachment, BinaryOp, Expr, ExprKind, GROUND, InertiaOption, JointKind, Name};
 
 /// MuJoCo's name of the body that is fixed to the ground.
 pub(super) const WORLD: &str = "world";
@@ -114,7 +114,7 @@ impl<'a> MjcfReader<'a> {
 
     /// Reports the option `base = free` unless the file has exactly one outermost body and it has no joints.
     fn reject_wrong_free_base_option(&self, open: &[PendingBody<'a>], cx: &mut Cx<'_>) {
-        if self.options.base != Base::Free {
+        if self.options.base != BaseAttachment::Free {
             return;
         }
         let fits = match open {
@@ -159,7 +159,7 @@ impl<'a> MjcfReader<'a> {
             });
         }
         self.report_aligned_free_joint(&inside, cx);
-        if self.options.base == Base::Free && open.parent.text == GROUND && joints.is_empty() {
+        if self.options.base == BaseAttachment::Free && open.parent.text == GROUND && joints.is_empty() {
             joints.extend(self.generated_free_joint(&body));
         }
         self.reject_gravity_compensation(node, cx);
@@ -383,13 +383,13 @@ impl<'a> MjcfReader<'a> {
         let text = unused_name(crate::syntax::ROOT_JOINT, |name| self.joint_names.contains(name));
         self.joint_names.insert(text.clone());
         let place = body.place.clone();
-        let value_with_span = |value| Located { value, place: place.clone() };
+        let value_with_source_place = |value| Located { value, place: place.clone() };
         Some(BodyJoint {
             name: Name { text, place: place.clone() },
             kind: JointKind::Free,
             word: "free",
-            anchor: value_with_span([0.0; 3]),
-            axis: value_with_span([0.0, 0.0, 1.0]),
+            anchor: value_with_source_place([0.0; 3]),
+            axis: value_with_source_place([0.0, 0.0, 1.0]),
             reference: 0.0,
             limits: FileLimits::default(),
             damping: None,
@@ -443,7 +443,7 @@ fn source_position_of_mass(inside: &BodyContents<'_>, node: Node<'_>, cx: &Cx<'_
 
 /// Returns a joint that fixes one link to another.
 fn weld_joint(name: Name, parent: Name, child: Name, pose: &NumericPose) -> FileJoint {
-    let origin = origin_of_pose(pose, &name.place);
+    let origin = origin_from_pose(pose, &name.place);
     FileJoint::weld(name, "weld", [parent, child], origin)
 }
 
@@ -471,7 +471,7 @@ fn joint_with_ends(joint: BodyJoint, carrier: &Name, child: &Name, outer: &Numer
             axes: matrix_product(&outer.axes, &inner.axes),
         }
     };
-    let origin = origin_of_pose(&pose, &joint.anchor.place);
+    let origin = origin_from_pose(&pose, &joint.anchor.place);
     let links = [carrier.clone(), child.clone()];
     FileJoint {
         anchor: if free { [0.0; 3] } else { joint.anchor.value },

@@ -2,7 +2,7 @@
 
 use super::body::ElementWithPose;
 use super::defaults::ElementWithDefaults;
-use super::reader::{MjcfReader, origin_of_pose};
+use super::reader::{MjcfReader, origin_from_pose};
 use super::touch::{ContactGeometry, ContactShape, MjcfContactParameters};
 use crate::import::context::Cx;
 use crate::import::element::element_source_position;
@@ -63,7 +63,7 @@ impl<'a> MjcfReader<'a> {
                 let form = ContactGeometry::Solid { number, shape: kind, center: pose.at };
                 self.record_contact_shape(link, shape, form, cx);
             }
-            let origin = origin_of_pose(&pose, &at);
+            let origin = origin_from_pose(&pose, &at);
             let part = FileCollisionShape { origin, shape: kind, mesh, place: at };
             self.robot.collisions.push((link, part));
         }

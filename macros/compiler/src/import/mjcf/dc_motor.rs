@@ -2,7 +2,7 @@
 //! and the controller of the motor (MuJoCo 4.0, "DC motor technical note").
 
 use super::activation::{
-    ActuatorLaw, ActuatorNames, CONTROLS, OTHER_INPUTS, TINY, report_unsupported_controller_limit,
+    ActuatorNames, CONTROLS, OTHER_INPUTS, SymbolicActuatorLaw, TINY, report_unsupported_controller_limit,
     requested_controller_inputs,
 };
 use super::defaults::ElementWithDefaults;
@@ -13,7 +13,7 @@ use crate::import::imported::Located;
 
 /// Writes the force of a motor with its states: temperature, deflection of the bristles, current.
 pub(super) fn write_motor_law(
-    law: &mut ActuatorLaw,
+    law: &mut SymbolicActuatorLaw,
     actuator: &ElementWithDefaults<'_>,
     record: &ActuatorRecord<'_>,
     named: &ActuatorNames<'_>,
@@ -119,7 +119,7 @@ fn report_unsupported_attribute<T>(
 
 /// Adds the inputs, and returns the voltage. The controller commands a torque and compensates the back-EMF.
 fn motor_voltage_from_inputs(
-    law: &mut ActuatorLaw,
+    law: &mut SymbolicActuatorLaw,
     actuator: &ElementWithDefaults<'_>,
     gain: &[f64; 10],
     none: bool,
@@ -178,7 +178,7 @@ fn motor_voltage_from_inputs(
 /// Adds the friction of LuGre's model: stiffness and damping of the bristles, and Coulomb torque, static
 /// torque and Stribeck speed.
 fn add_bristle_friction(
-    law: &mut ActuatorLaw,
+    law: &mut SymbolicActuatorLaw,
     [stiffness, damping]: [f64; 2],
     [coulomb, held, stribeck]: [f64; 3],
     named: &ActuatorNames<'_>,

@@ -1,7 +1,7 @@
 //! `<equality>` → joints that follow others, constraints on coordinates, and loop-closing joints.
 
 use super::defaults::ElementWithDefaults;
-use super::reader::{MjcfReader, origin_of_pose};
+use super::reader::{MjcfReader, origin_from_pose};
 use super::tendon::Tendon;
 use crate::import::context::{Cx, quote_word};
 use crate::import::element::{Node, child_elements, element_source_position, read_name_attribute};
@@ -201,7 +201,7 @@ impl<'a> MjcfReader<'a> {
         named.text = unused_name(&named.text, |name| self.joint_names.contains(name));
         self.joint_names.insert(named.text.clone());
         let [parent, child] = [first, second].map(|(body, pose)| {
-            let origin = origin_of_pose(&pose, &body.place);
+            let origin = origin_from_pose(&pose, &body.place);
             Endpoint { at: origin.nonzero_position(), rotated: origin.nonzero_rotations(), body }
         });
         self.robot.closing.push(plain_joint(named, kind, parent, child));

@@ -39,7 +39,7 @@ pub(super) fn read_with_includes(
     let mut steps = expansion_steps(&whole.files, 0, name, true, 0, cx)?;
     while let Some(step) = steps.pop() {
         match step {
-            ExpansionStep::Copy { file, from, to } => whole.append_file_bytes(file, from, to, name, cx)?,
+            ExpansionStep::Copy { file, from, to } => whole.append_file_excerpt(file, from, to, name, cx)?,
             ExpansionStep::Leave => {
                 open.pop();
             }
@@ -147,6 +147,6 @@ fn find_included_file(
     };
     let name = Name { text: shown.clone(), place: at.place.clone() };
     let text = file::read_named_file(&path, &name, FileFormat::Mjcf, cx)?;
-    let text = xml::clean_xml_text(&text).into_owned();
+    let text = xml::blank_out_nonstandard_xml(&text).into_owned();
     Some(LoadedRobotFile { text, shown, path: canonical_path(&path) })
 }

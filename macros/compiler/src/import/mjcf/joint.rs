@@ -231,7 +231,7 @@ impl<'a> MjcfReader<'a> {
             if armature.value < 0.0 {
                 cx.report_error(&armature.place, format!("negative armature `{}`", armature.value), |d| d);
             }
-            self.add_drive(joint, FileForceLaw::Inerter(armature.value));
+            self.add_joint_force_element(joint, FileForceLaw::Inerter(armature.value));
             return;
         }
         let message = format!("`armature` of a `{}` joint is not supported", joint.word);
@@ -261,7 +261,10 @@ impl<'a> MjcfReader<'a> {
         report_unsupported_spring_yield(element, cx);
         if joint.kind.single_axis_joint_is_rotational().is_some() {
             if let Some(stiffness) = element.polynomial_force_coefficients("stiffness", cx) {
-                self.add_drive(joint, FileForceLaw::polynomial_spring_law(stiffness.value, rest));
+                self.add_joint_force_element(
+                    joint,
+                    FileForceLaw::polynomial_spring_law(stiffness.value, rest),
+                );
             }
         } else if let Some(stiffness) = element.linear_coefficient("stiffness", IGNORE_PASSIVE, cx) {
             let message = format!("`stiffness` of a `{}` joint is not supported", joint.word);
@@ -286,7 +289,7 @@ impl<'a> MjcfReader<'a> {
                 && let Some(found) = element.polynomial_force_coefficients(which, cx)
                 && found.value[1..] != [0.0; 2]
             {
-                self.add_drive(joint, FileForceLaw::polynomial_damper_law(found.value));
+                self.add_joint_force_element(joint, FileForceLaw::polynomial_damper_law(found.value));
                 continue;
             }
             let found = match is_damping {
@@ -311,7 +314,7 @@ impl<'a> MjcfReader<'a> {
         }
     }
 
-    fn add_drive(&mut self, joint: &BodyJoint, law: FileForceLaw) {
+    fn add_joint_force_element(&mut self, joint: &BodyJoint, law: FileForceLaw) {
         let on = FileForceTarget::Sum(vec![(joint.name.clone(), 1.0)]);
         self.robot.drives.push(FileForceElement { name: joint.name.clone(), on, law });
     }

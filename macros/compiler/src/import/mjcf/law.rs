@@ -1,7 +1,7 @@
 //! Parameters of an actuator → its force, with the states of its activation.
 
 use super::activation::{
-    ActuatorLaw, ActuatorNames, CONTROLS, OTHER_INPUTS, TINY, report_unsupported_controller_limit,
+    ActuatorNames, CONTROLS, OTHER_INPUTS, SymbolicActuatorLaw, TINY, report_unsupported_controller_limit,
     requested_controller_inputs,
 };
 use super::dc_motor;
@@ -21,7 +21,7 @@ pub(super) enum ActuatorForceLaw {
         bias: [f64; 3],
     },
     /// Any other force law, as expressions.
-    Law(Box<ActuatorLaw>),
+    Law(Box<SymbolicActuatorLaw>),
 }
 
 /// Reads the force of an actuator with its defaults. `classes` contains the defaults from the outermost class
@@ -43,7 +43,7 @@ pub(super) fn read_actuator_force<'a>(
         let bias = if record.bias_kind == "affine" { [b0, b1, b2] } else { [0.0; 3] };
         return Some(ActuatorForceLaw::Affine { gain: g0, bias });
     }
-    let mut law = ActuatorLaw::new(named, &element_source_position(actuator.node, cx));
+    let mut law = SymbolicActuatorLaw::new(named, &element_source_position(actuator.node, cx));
     match record.gain_kind {
         "dcmotor" => dc_motor::write_motor_law(&mut law, actuator, &record, named, cx)?,
         "pid" => write_pid_law(&mut law, actuator, &record, named, cx)?,
@@ -105,7 +105,7 @@ fn check_actuator_type(
 
 /// Writes the force `gain · w + bias` with an optional state `w` in the place of the input.
 fn write_general_law(
-    law: &mut ActuatorLaw,
+    law: &mut SymbolicActuatorLaw,
     actuator: &ElementWithDefaults<'_>,
     record: &ActuatorRecord<'_>,
     named: &ActuatorNames<'_>,
@@ -158,7 +158,7 @@ fn write_general_law(
 /// Writes the force of a PID controller: `kp (pos − length) + kv (vel − rate) + ff + ki z` with
 /// `ż = pos − length`.
 fn write_pid_law(
-    law: &mut ActuatorLaw,
+    law: &mut SymbolicActuatorLaw,
     actuator: &ElementWithDefaults<'_>,
     record: &ActuatorRecord<'_>,
     named: &ActuatorNames<'_>,

@@ -1,7 +1,7 @@
 //! Muscles: curves of force over length and speed, and the rate of the activation (MuJoCo, *Modeling*,
 //! "Muscles").
 
-use super::activation::{ActuatorLaw, OTHER_INPUTS, TINY};
+use super::activation::{OTHER_INPUTS, SymbolicActuatorLaw, TINY};
 use super::defaults::ElementWithDefaults;
 use super::formula::ActuatorLawExpression;
 use super::record::ActuatorRecord;
@@ -73,13 +73,13 @@ impl Muscle {
     }
 
     /// Returns the muscle length in units of its reference length, as an expression.
-    fn normalized_muscle_length(&self, prm: &[f64; 9], law: &ActuatorLaw) -> ActuatorLawExpression {
+    fn normalized_muscle_length(&self, prm: &[f64; 9], law: &SymbolicActuatorLaw) -> ActuatorLawExpression {
         let unit = self.reference_length(prm);
         law.actuator_length_formula() * (1.0 / unit) + (prm[0] - self.lengths[0] / unit)
     }
 
     /// Returns the muscle force at full activation, which is negative.
-    pub(super) fn active_force(&self, law: &ActuatorLaw) -> ActuatorLawExpression {
+    pub(super) fn active_force(&self, law: &SymbolicActuatorLaw) -> ActuatorLawExpression {
         let [_, _, force, _, lmin, lmax, vmax, _, fvmax] = self.gain;
         let length = self.normalized_muscle_length(&self.gain, law);
         let speed = law.actuator_length_rate_formula() * (1.0 / (self.reference_length(&self.gain) * vmax));
@@ -103,7 +103,7 @@ impl Muscle {
     }
 
     /// Returns the passive muscle force, which is negative.
-    pub(super) fn passive_force(&self, law: &ActuatorLaw) -> ActuatorLawExpression {
+    pub(super) fn passive_force(&self, law: &SymbolicActuatorLaw) -> ActuatorLawExpression {
         let [_, _, force, _, _, lmax, _, fpmax, _] = self.bias;
         let length = self.normalized_muscle_length(&self.bias, law);
         let border = 0.5 * (1.0 + lmax);
@@ -132,7 +132,7 @@ fn report_unsupported_muscle_attribute<T>(
 /// Returns the rate of the activation. Time constants depend on the activation and on the direction of its
 /// change; `dynprm` contains both, and the width over which they are blended.
 pub(super) fn activation_rate(
-    law: &ActuatorLaw,
+    law: &SymbolicActuatorLaw,
     input: ActuatorLawExpression,
     state: ActuatorLawExpression,
     record: &ActuatorRecord<'_>,

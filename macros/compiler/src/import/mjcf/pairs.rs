@@ -90,11 +90,11 @@ impl<'a> MjcfReader<'a> {
                 .add_help("to ignore the contacts of the file, remove `contacts = file`")
             });
         }
-        self.declare_contacts(candidates);
+        self.add_supported_contacts(candidates);
     }
 
     /// Adds the supported contacts among the candidates, and lists the others in the documentation.
-    fn declare_contacts(&mut self, mut candidates: Vec<ContactCandidate>) {
+    fn add_supported_contacts(&mut self, mut candidates: Vec<ContactCandidate>) {
         let labels = self.shape_labels();
         let has_planes = self.contact_shapes.iter().filter(|shape| shape.form.is_plane()).count() > 1;
         let mut names: BTreeSet<String> = self.joint_names.union(&self.link_names).cloned().collect();
@@ -301,7 +301,7 @@ impl<'a> MjcfReader<'a> {
                 ContactGeometry::Plane(_) => FileContactKind::Plane,
                 ContactGeometry::Solid { .. } => FileContactKind::Pair,
             };
-            let of_file = FileContact { kind, distance: self.distance_of_shapes(shapes) };
+            let of_file = FileContact { kind, distance: self.bounding_sphere_distance(shapes) };
             ContactCandidate { shapes, name, friction, place, of_file }
         });
         candidates.collect()
@@ -334,7 +334,7 @@ impl<'a> MjcfReader<'a> {
                 name: None,
                 friction: first.law.combined_friction_coefficients(&second.law),
                 place: first.place.clone(),
-                of_file: FileContact { kind, distance: self.distance_of_shapes(pair) },
+                of_file: FileContact { kind, distance: self.bounding_sphere_distance(pair) },
             })
         };
         let (planes, solids): (Vec<usize>, Vec<usize>) =
@@ -348,7 +348,7 @@ impl<'a> MjcfReader<'a> {
 
     /// Returns the distance of the spheres around two shapes in the configuration of the file, m; zero for a
     /// plane.
-    fn distance_of_shapes(&self, pair: [usize; 2]) -> f64 {
+    fn bounding_sphere_distance(&self, pair: [usize; 2]) -> f64 {
         let bounding_sphere = |k: usize| match &self.contact_shapes[k].form {
             ContactGeometry::Plane(_) => None,
             ContactGeometry::Solid { shape, center, .. } => {

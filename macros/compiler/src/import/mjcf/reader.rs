@@ -164,10 +164,10 @@ pub(super) fn assign_mass_properties(link: &mut Body, mass: &BodyMassProperties,
 }
 
 /// Converts a numeric pose to a [`FileOrigin`] with a source position.
-pub(super) fn origin_of_pose(pose: &NumericPose, place: &Place) -> FileOrigin {
-    let value_with_span = |value| Located { value, place: place.clone() };
+pub(super) fn origin_from_pose(pose: &NumericPose, place: &Place) -> FileOrigin {
+    let value_with_source_place = |value| Located { value, place: place.clone() };
     FileOrigin {
-        xyz: value_with_span(pose.at.map(|x| x + 0.0)),
-        rpy: value_with_span(roll_pitch_yaw(&pose.axes)),
+        xyz: value_with_source_place(pose.at.map(|x| x + 0.0)),
+        rpy: value_with_source_place(roll_pitch_yaw(&pose.axes)),
     }
 }

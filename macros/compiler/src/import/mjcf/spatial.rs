@@ -253,14 +253,14 @@ fn position_in_frame(poses: &BodyPoses, frame: &BodyFrame, spot: &BodyFrame) -> 
 fn report_elements_without_length(node: Node<'_>, cx: &mut Cx<'_>) -> Option<()> {
     let parts: Vec<Node<'_>> = child_elements(node).collect();
     let is_end_of_path = |part: Option<&Node<'_>>| part.is_none_or(|part| part.tag_name().name() == "pulley");
-    let is_isolated_site = |k: &usize| match parts[*k].tag_name().name() {
+    let has_no_segment = |k: &usize| match parts[*k].tag_name().name() {
         "site" => {
             is_end_of_path(k.checked_sub(1).and_then(|k| parts.get(k))) && is_end_of_path(parts.get(k + 1))
         }
         "pulley" => is_end_of_path(parts.get(k + 1)),
         _ => false,
     };
-    let found = (0..parts.len()).find(is_isolated_site).map(|k| parts[k]);
+    let found = (0..parts.len()).find(has_no_segment).map(|k| parts[k]);
     let Some(found) = found.or(parts.is_empty().then_some(node)) else { return Some(()) };
     let message = format!("{} adds nothing to the length of the tendon", quoted_tag(found));
     cx.report_error(&element_source_position(found, cx), message, |d| {

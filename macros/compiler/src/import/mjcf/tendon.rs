@@ -49,7 +49,7 @@ impl Tendon {
     }
 
     /// Returns the coordinate or length that forces on a tendon act on.
-    pub(super) fn tendon_drive_target(
+    pub(super) fn tendon_force_target(
         name: &Name,
         tendons: &[Tendon],
         help: &'static str,
@@ -137,8 +137,8 @@ impl<'a> MjcfReader<'a> {
         if let Some((_, help)) = laws.first()
             && let Some(on) = target_or_reported_error(&path, help, cx)
         {
-            let drive_on_tendon = |law| FileForceElement { name: named.clone(), on: on.clone(), law };
-            self.robot.drives.extend(laws.iter().map(|(law, _)| drive_on_tendon(law.clone())));
+            let tendon_force_element = |law| FileForceElement { name: named.clone(), on: on.clone(), law };
+            self.robot.drives.extend(laws.iter().map(|(law, _)| tendon_force_element(law.clone())));
         }
         Some(Tendon { name: named, path })
     }

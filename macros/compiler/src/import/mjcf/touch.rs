@@ -123,7 +123,7 @@ impl ContactGeometry {
     fn surface_vertex_and_corner_counts(&self) -> SurfaceFeatureCounts {
         let id = match self {
             ContactGeometry::Plane(_) => SurfaceId::Plane,
-            ContactGeometry::Solid { shape, .. } => shape.surface(),
+            ContactGeometry::Solid { shape, .. } => shape.surface_id(),
         };
         SurfaceFeatureCounts { id: Some(id), vertices: 0, corners: 0 }
     }

@@ -2,7 +2,7 @@
 
 use super::body::ElementWithPose;
 use super::defaults::ElementWithDefaults;
-use super::reader::{MjcfReader, origin_of_pose};
+use super::reader::{MjcfReader, origin_from_pose};
 use crate::import::context::Cx;
 use crate::import::element::element_source_position;
 use crate::import::pose::NumericPose;
@@ -28,7 +28,7 @@ impl<'a> MjcfReader<'a> {
             let Some((kind, mesh, pose)) = self.visual_shape(shape, cx) else { continue };
             let at = element_source_position(shape.node, cx);
             let part =
-                FileVisual { origin: origin_of_pose(&outer.compose_with(&pose), &at), shape: kind, mesh };
+                FileVisual { origin: origin_from_pose(&outer.compose_with(&pose), &at), shape: kind, mesh };
             self.robot.visuals.push((link, part));
         }
     }

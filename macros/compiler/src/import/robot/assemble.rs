@@ -11,8 +11,8 @@ use super::tree::JointOrder;
 use crate::import::context::{Cx, quote_word};
 use crate::import::imported::ImportedMechanism;
 use crate::syntax::{
-    Base, Body, Endpoint, Expr, FileInputSource, FileOptions, GROUND, Joint, JointKind, LimitOption, Name,
-    ROOT_JOINT,
+    BaseAttachment, Body, Endpoint, Expr, FileInputSource, FileOptions, GROUND, Joint, JointKind,
+    LimitOption, Name, ROOT_JOINT,
 };
 
 /// Assembles the mechanism. Each body is placed in the list like the joint whose child it is.
@@ -91,22 +91,22 @@ pub(in crate::import) fn assemble_mechanism(
 }
 
 /// Returns the joint between ground and root, which URDF files do not contain.
-fn root_joint(robot: &Robot, root: usize, base: Base) -> Joint {
+fn root_joint(robot: &Robot, root: usize, base: BaseAttachment) -> Joint {
     let link = &robot.links[root].name;
     let names_in_robot =
         || robot.joints.iter().map(|j| &j.name.text).chain(robot.links.iter().map(|l| &l.name.text));
     let text = unused_name(ROOT_JOINT, |text| names_in_robot().any(|name| name == text));
     let name_with_link_span = |text: &str| Name { text: text.to_string(), place: link.place.clone() };
     let kind = match base {
-        Base::Fixed => JointKind::Weld,
-        Base::Free => JointKind::Free,
+        BaseAttachment::Fixed => JointKind::Weld,
+        BaseAttachment::Free => JointKind::Free,
     };
     let mut ground = endpoint_at_origin(name_with_link_span(GROUND));
-    if let Some(origin) = robot.root.as_ref().filter(|_| base == Base::Fixed) {
+    if let Some(origin) = robot.root.as_ref().filter(|_| base == BaseAttachment::Fixed) {
         (ground.at, ground.rotated) = (origin.nonzero_position(), origin.nonzero_rotations());
     }
     let mut joint = plain_joint(name_with_link_span(&text), kind, ground, endpoint_at_origin(link.clone()));
-    if let Some(origin) = robot.root.as_ref().filter(|_| base == Base::Free) {
+    if let Some(origin) = robot.root.as_ref().filter(|_| base == BaseAttachment::Free) {
         joint.initial = origin.pose().free_joint_coordinates();
     }
     joint

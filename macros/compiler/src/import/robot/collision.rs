@@ -2,7 +2,7 @@
 
 use super::origin::FileOrigin;
 use crate::diag::Place;
-use crate::syntax::{Collision, Endpoint, MeshVertices, Name, Shape};
+use crate::syntax::{CollisionShape, Endpoint, MeshVertices, Name, Shape};
 
 /// Collision shape of a link.
 pub(in crate::import) struct FileCollisionShape {
@@ -18,10 +18,10 @@ pub(in crate::import) struct FileCollisionShape {
 
 impl FileCollisionShape {
     /// Converts the shape to collision geometry of the link with this name.
-    pub(in crate::import) fn collision_on_link(&self, link: &Name) -> Collision {
+    pub(in crate::import) fn collision_on_link(&self, link: &Name) -> CollisionShape {
         let (at, rotated) = (self.origin.nonzero_position(), self.origin.nonzero_rotations());
         let on = Endpoint { body: link.clone(), at, rotated };
         let (shape, mesh) = (self.shape, self.mesh.clone());
-        Collision { on, shape, mesh, hull: Vec::new(), place: self.place.clone() }
+        CollisionShape { on, shape, mesh, hull: Vec::new(), place: self.place.clone() }
     }
 }

@@ -237,7 +237,7 @@ pub(in crate::import) fn identifier_of_names(of: &str, word: &str, kind: &str) -
 fn mass_properties(body: &Body) -> Option<Vec<f64>> {
     let mass = body.mass.as_ref().map_or(Some(0.0), Expr::literal_number)?;
     let com = body.com.as_ref().map_or(Some([0.0; 3]), vector_components)?;
-    let inertia = body.inertia.as_ref().map_or(Some([[0.0; 3]; 3]), inertia_matrix)?;
+    let inertia = body.inertia.as_ref().map_or(Some([[0.0; 3]; 3]), inertia_matrix_of_expression)?;
     let entries = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)].map(|(i, j)| inertia[i][j]);
     Some([mass].into_iter().chain(com).chain(entries).collect())
 }
@@ -250,15 +250,18 @@ fn vector_components(e: &Expr) -> Option<Vector> {
 }
 
 /// Returns the inertia matrix of the file as numbers, including rotations about successive axes.
-fn inertia_matrix(e: &Expr) -> Option<Matrix> {
+fn inertia_matrix_of_expression(e: &Expr) -> Option<Matrix> {
     match &e.kind {
         ExprKind::Array(rows) => {
             let rows: Option<Vec<Vector>> = rows.iter().map(vector_components).collect();
             rows?.try_into().ok()
         }
         ExprKind::Method(inner, _, rotations) => {
-            let axes = rotation_matrix(rotations)?;
-            Some(matrix_product(&matrix_product(&axes, &inertia_matrix(inner)?), &transpose(&axes)))
+            let axes = rotation_matrix_of_expressions(rotations)?;
+            Some(matrix_product(
+                &matrix_product(&axes, &inertia_matrix_of_expression(inner)?),
+                &transpose(&axes),
+            ))
         }
         _ => None,
     }
@@ -272,7 +275,7 @@ fn axis_and_angle_of_rotation(e: &Expr) -> Option<(usize, f64)> {
 }
 
 /// Returns the matrix of successive rotations about moving axes.
-fn rotation_matrix(rotations: &[Expr]) -> Option<Matrix> {
+fn rotation_matrix_of_expressions(rotations: &[Expr]) -> Option<Matrix> {
     rotations
         .iter()
         .try_fold(IDENTITY, |whole, e| Some(matrix_product(&whole, &matrix_of_rotation_expression(e)?)))
@@ -303,7 +306,7 @@ fn joint_placement(joint: &Joint) -> Option<Vec<f64>> {
             rpy[axis] = angle;
             rpy
         }),
-        None => roll_pitch_yaw(&rotation_matrix(rotations)?),
+        None => roll_pitch_yaw(&rotation_matrix_of_expressions(rotations)?),
     };
     let xyz = joint.parent.at.as_ref().map_or(Some([0.0; 3]), vector_components)?;
     Some(xyz.into_iter().chain(rpy).collect())

@@ -4,7 +4,7 @@
 use super::joint::FileJoint;
 use super::parts::{Robot, massless_link};
 use crate::import::context::{Cx, format_position, quote_word};
-use crate::syntax::{Base, FileFormat, GROUND, Name};
+use crate::syntax::{BaseAttachment, FileFormat, GROUND, Name};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Reports links that share a name, and joints that share a name.
@@ -28,8 +28,8 @@ pub(in crate::import) fn declare_world_link(robot: &mut Robot) {
 
 /// Renames a link `ground` to `ground_link`, because `ground` is the name of the fixed frame. The root of a
 /// fixed mechanism may be called `ground`.
-pub(in crate::import) fn rename_link_named_ground(robot: &mut Robot, base: Base) {
-    if base == Base::Fixed && !robot.joints.iter().any(|joint| joint.child.text == GROUND) {
+pub(in crate::import) fn rename_link_named_ground(robot: &mut Robot, base: BaseAttachment) {
+    if base == BaseAttachment::Fixed && !robot.joints.iter().any(|joint| joint.child.text == GROUND) {
         return;
     }
     let other = unused_name("ground_link", |name| robot.links.iter().any(|link| link.name.text == name));

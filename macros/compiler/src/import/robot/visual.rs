@@ -1,7 +1,7 @@
 //! Visual shapes of the links of a robot file.
 
 use super::origin::FileOrigin;
-use crate::syntax::{Endpoint, Mesh, Name, Shape, Visual};
+use crate::syntax::{Endpoint, Mesh, Name, Shape, VisualShape};
 
 /// Visual shape of a link of a robot file.
 pub(in crate::import) struct FileVisual {
@@ -15,12 +15,12 @@ pub(in crate::import) struct FileVisual {
 
 impl FileVisual {
     /// Converts the shape to visual geometry of the link with this name.
-    pub(in crate::import) fn visual_on_link(&self, link: &Name) -> Visual {
+    pub(in crate::import) fn visual_on_link(&self, link: &Name) -> VisualShape {
         let on = Endpoint {
             body: link.clone(),
             at: self.origin.nonzero_position(),
             rotated: self.origin.nonzero_rotations(),
         };
-        Visual { on, shape: self.shape, mesh: self.mesh.clone() }
+        VisualShape { on, shape: self.shape, mesh: self.mesh.clone() }
     }
 }

@@ -64,7 +64,7 @@ pub(super) fn read_with_includes(
     while let Some(step) = steps.pop() {
         match step {
             ModelExpansionStep::Copy(file, range) => {
-                whole.append_file_bytes(file, range.start, range.end, name, cx)?
+                whole.append_file_excerpt(file, range.start, range.end, name, cx)?
             }
             ModelExpansionStep::Put(text, file, at) => whole.append_text(&text, (file, at), name, cx)?,
             ModelExpansionStep::Leave => {
@@ -368,7 +368,7 @@ fn find_included_file(
     let name = Name { text: shown.clone(), place: include.uri.place.clone() };
     let text = file::read_named_file(path, &name, FileFormat::Sdf, cx)?;
     Some(LoadedRobotFile {
-        text: xml::clean_xml_text(&text).into_owned(),
+        text: xml::blank_out_nonstandard_xml(&text).into_owned(),
         shown: shown.clone(),
         path: canonical_path(path),
     })

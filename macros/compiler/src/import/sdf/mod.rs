@@ -110,12 +110,12 @@ pub(super) fn import_sdf(
     let whole = include::read_with_includes(text, path, &options.path, cx)?;
     let folder = path.parent().unwrap_or(path);
     import_composed_text(whole, &options.path, FileFormat::Sdf, cx, |root, cx| {
-        read_root_element(root, folder, options, cx)
+        mechanism_from_root_element(root, folder, options, cx)
     })
 }
 
 /// Imports the mechanism from the root element of an SDF file, whose meshes are looked up in `folder`.
-fn read_root_element<'a>(
+fn mechanism_from_root_element<'a>(
     root_node: Node<'a>,
     folder: &Path,
     options: &FileOptions,
@@ -498,7 +498,7 @@ fn canonical_link(node: Node<'_>, scope: &Scope, cx: &Cx<'_>) -> Option<Name> {
 
 /// Returns the names of the links that are fixed to the ground.
 fn links_fixed_to_ground(robot: &Robot, root: &str, options: &FileOptions) -> Vec<String> {
-    if options.base == crate::syntax::Base::Free {
+    if options.base == crate::syntax::BaseAttachment::Free {
         return Vec::new();
     }
     let mut standing = BTreeSet::from([GROUND, root]);

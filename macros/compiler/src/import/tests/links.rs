@@ -68,7 +68,7 @@ fn inertia_errors_are_ignored_for_kinematics() {
 #[test]
 fn missing_attributes_are_named_in_the_error() {
     check_import_with_options(
-        &FileOptions { base: Base::Free, ..default_file_options() },
+        &FileOptions { base: BaseAttachment::Free, ..default_file_options() },
         "<robot>\n<link name='a'><inertial></inertial></link></robot>",
         r#"r.urdf:2:16: `<inertial>` without `<mass>`
            = help: expected `<mass value="…"/>`
@@ -207,7 +207,7 @@ fn links_fixed_to_the_ground_need_no_inertia() {
         )
     };
     check_import_with_default_options(&text, &missing_inertia_message(4));
-    let free = FileOptions { base: Base::Free, ..default_file_options() };
+    let free = FileOptions { base: BaseAttachment::Free, ..default_file_options() };
     check_import_with_options(&free, &text, &[2, 3, 4].map(missing_inertia_message).concat());
     check_import_with_options(
         &options_with_locked_joints(&["b"]),

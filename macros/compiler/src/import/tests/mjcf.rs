@@ -208,7 +208,7 @@ fn non_mjcf_file_names_its_format_in_the_error() {
 
 #[test]
 fn free_base_requires_a_body_without_joints() {
-    let free = FileOptions { base: Base::Free, ..mjcf_options() };
+    let free = FileOptions { base: BaseAttachment::Free, ..mjcf_options() };
     check_import_with_options(
         &free,
         "<mujoco><worldbody><body name='b'/></worldbody></mujoco>",

@@ -3,7 +3,7 @@
 use super::{FileOptions, ImportedMechanism, import_file};
 use crate::diag::Diagnostics;
 use crate::syntax::{
-    Base, BinaryOp, Body, ContactOption, Endpoint, Expr, ExprKind, FileForceElement, FileForceLaw,
+    BaseAttachment, BinaryOp, Body, ContactOption, Endpoint, Expr, ExprKind, FileForceElement, FileForceLaw,
     FileForceTarget, FileFormat, FileInputSource, InertiaOption, Joint, LoopOption, Name,
 };
 use proc_macro2::Span;

@@ -28,7 +28,8 @@ fn joints_are_ordered_depth_first_and_alphabetically() {
 
 #[test]
 fn root_link_is_fixed_or_free() {
-    let free = FileOptions { base: Base::Free, inputs: FileInputSource::Joints, ..default_file_options() };
+    let free =
+        FileOptions { base: BaseAttachment::Free, inputs: FileInputSource::Joints, ..default_file_options() };
     check_import_with_options(
         &free,
         "<robot><link name='any &amp; name'/></robot>",
@@ -83,7 +84,8 @@ fn duplicate_names_are_rejected() {
         "r.urdf:4:13: second link with the name `ground`
          = help: the first is at r.urdf:3:13",
     );
-    let free = FileOptions { base: Base::Free, inputs: FileInputSource::Joints, ..default_file_options() };
+    let free =
+        FileOptions { base: BaseAttachment::Free, inputs: FileInputSource::Joints, ..default_file_options() };
     let both = [massless_link("ground"), massless_link("ground_link")].concat();
     check_import_with_options(
         &free,

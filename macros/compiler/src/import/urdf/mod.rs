@@ -25,7 +25,7 @@ mod standing;
 mod visual;
 
 /// Reads the root element of a URDF file in `folder`.
-pub(super) fn read_root_element(
+pub(super) fn mechanism_from_root_element(
     node: Node<'_>,
     folder: &Path,
     options: &FileOptions,

@@ -2,14 +2,14 @@
 //! properties appear in no equation and may be incomplete.
 
 use crate::import::element::{Node, child_elements};
-use crate::syntax::{Base, FileOptions};
+use crate::syntax::{BaseAttachment, FileOptions};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Returns the names of the links that fixed and locked joints connect to a fixed root. If the file's tree is
 /// invalid, the result may contain other links.
 pub(super) fn links_fixed_to_ground<'a>(robot: Node<'a>, options: &FileOptions) -> BTreeSet<&'a str> {
     let mut standing = BTreeSet::new();
-    if options.base == Base::Free {
+    if options.base == BaseAttachment::Free {
         return standing;
     }
     let (mut below, mut carried) = (BTreeMap::<&str, Vec<&str>>::new(), BTreeSet::new());

@@ -154,10 +154,12 @@ struct DofWrenchDerivatives<'g> {
 impl<'g> DofWrenchDerivatives<'g> {
     fn new(column: &DofMotionChanges<'g>, sum: &SubtreeMassAndWrench<'g>) -> DofWrenchDerivatives<'g> {
         DofWrenchDerivatives {
-            by_q: momentum(&sum.inertia, &column.second).plus(&sum.velocity_map(&column.first)),
-            by_v: sum.velocity_map(&column.subspace).plus(&momentum(&sum.inertia, &column.rate)),
+            by_q: momentum(&sum.inertia, &column.second).plus(&sum.velocity_derivative_wrench(&column.first)),
+            by_v: sum
+                .velocity_derivative_wrench(&column.subspace)
+                .plus(&momentum(&sum.inertia, &column.rate)),
             momentum: momentum(&sum.inertia, &column.subspace),
-            moment: sum.transposed_velocity_map(&column.subspace),
+            moment: sum.transposed_velocity_derivative_moment(&column.subspace),
         }
     }
 

@@ -47,14 +47,14 @@ pub fn link_blocks<'g>(
     };
     for block in &blocks {
         push_lanes(
-            lanes_of_block(block, joints)
+            links_and_dofs_of_block(block, joints)
                 .map(|(link, dof)| link_quantities_in_root_axes(&placements[link], dof, [v, a]))
                 .collect(),
             LINK_QUANTITIES,
         );
     }
     for block in &blocks {
-        let lanes = lanes_of_block(block, joints).enumerate();
+        let lanes = links_and_dofs_of_block(block, joints).enumerate();
         let mass_properties_of_lane = |(lane, (link, _)): (usize, (usize, &Dof<'g>))| {
             // The mass properties of a free link are in its last lane only, which all others include.
             let counted = joints[link].dofs.len() == 1 || lane + 1 == block.count;
@@ -103,7 +103,7 @@ fn divide_links(joints: &[Joint<'_>], free: bool, nv: usize) -> Option<Vec<LinkB
 }
 
 /// Returns link and degree of freedom of each lane of a block.
-fn lanes_of_block<'a, 'g>(
+fn links_and_dofs_of_block<'a, 'g>(
     block: &LinkBlock,
     joints: &'a [Joint<'g>],
 ) -> impl Iterator<Item = (usize, &'a Dof<'g>)> {
@@ -112,7 +112,7 @@ fn lanes_of_block<'a, 'g>(
 }
 
 /// Placement of a link in the axes of the root.
-struct RootPlacement<'g> {
+struct PlacementFromRoot<'g> {
     /// Rows of the rotation matrix.
     rows: [Vec3<'g>; 3],
     /// Position of the link's origin.
@@ -120,19 +120,23 @@ struct RootPlacement<'g> {
 }
 
 /// Returns the placements of all links relative to a free root link, otherwise to the ground.
-fn placements_from_root<'g>(model: &Model<'g>, joints: &[Joint<'g>], free: bool) -> Vec<RootPlacement<'g>> {
-    let root_placement = || RootPlacement {
+fn placements_from_root<'g>(
+    model: &Model<'g>,
+    joints: &[Joint<'g>],
+    free: bool,
+) -> Vec<PlacementFromRoot<'g>> {
+    let root_placement = || PlacementFromRoot {
         rows: [0, 1, 2].map(|k| Vec3::coordinate_axis(model.graph, k)),
         position: Vec3::zero(model.graph),
     };
     let ground = root_placement();
-    let mut all: Vec<RootPlacement<'g>> = Vec::with_capacity(joints.len());
+    let mut all: Vec<PlacementFromRoot<'g>> = Vec::with_capacity(joints.len());
     for joint in joints {
         let placed = match joint.parent {
             None if free => root_placement(),
             parent => {
                 let above = parent.map_or(&ground, |p| &all[p.0]);
-                RootPlacement {
+                PlacementFromRoot {
                     rows: above.rows.map(|row| joint.rotation.vector_in_child_axes(row)),
                     position: above.position + rotate_to_root_axes(&above.rows, joint.translation),
                 }
@@ -149,7 +153,7 @@ fn rotate_to_root_axes<'g>(rows: &[Vec3<'g>; 3], x: Vec3<'g>) -> Vec3<'g> {
 }
 
 fn link_quantities_in_root_axes<'g>(
-    place: &RootPlacement<'g>,
+    place: &PlacementFromRoot<'g>,
     dof: &Dof<'g>,
     [v, a]: [&[Expr<'g>]; 2],
 ) -> Vec<Expr<'g>> {

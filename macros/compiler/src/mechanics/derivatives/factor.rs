@@ -5,7 +5,7 @@
 //! Van Loan, *Matrix Computations*, 2013, § 4.4).
 
 use super::super::crba::Matrix;
-use super::super::ldl::{elimination_order, pivot_inverses};
+use super::super::ldl::{order_from_leaves_to_root, pivot_inverses};
 use crate::expr::Expr;
 use crate::kinematics::Joint;
 
@@ -25,7 +25,7 @@ pub struct MatrixFactorisation<'g> {
 impl<'g> MatrixFactorisation<'g> {
     /// Factorises a mass matrix, which may be unsymmetric, in an order from leaves to root.
     pub fn new(mass: &Matrix<'g>, joints: &[Joint<'g>]) -> MatrixFactorisation<'g> {
-        let order = elimination_order(joints, mass.len());
+        let order = order_from_leaves_to_root(joints, mass.len());
         let n = mass.len();
         match (0..n).all(|i| (0..i).all(|j| mass[i][j] == mass[j][i])) {
             true => MatrixFactorisation::factorise_from_leaves_to_root(mass, &order),

@@ -43,7 +43,7 @@ pub fn columns_determined_by_invariance<'g>(model: &Model<'g>, joints: &[Joint<'
     if bases.is_empty() {
         return found;
     }
-    let others = NoninertialTerms::new(model, joints);
+    let others = TermsWithoutInertialForces::new(model, joints);
     for base in bases.into_iter().filter(|base| {
         base.is_dynamics_independent_of_base(model, joints) && others.has_only_link_inertia(base.v)
     }) {
@@ -117,16 +117,16 @@ impl FreeBase {
 }
 
 /// All terms of the equations of motion except the inertial forces of the links.
-struct NoninertialTerms<'g> {
+struct TermsWithoutInertialForces<'g> {
     /// Derivatives of these terms with respect to configuration and velocity.
     forces: ForceDerivatives<'g>,
     /// For each velocity: whether the terms depend on the acceleration of that velocity.
     inertial: Vec<bool>,
 }
 
-impl<'g> NoninertialTerms<'g> {
+impl<'g> TermsWithoutInertialForces<'g> {
     /// Derives the equations of motion of the model with massless links.
-    fn new(model: &Model<'g>, joints: &[Joint<'g>]) -> NoninertialTerms<'g> {
+    fn new(model: &Model<'g>, joints: &[Joint<'g>]) -> TermsWithoutInertialForces<'g> {
         let mut massless = model.clone();
         for link in &mut massless.links {
             link.inertia = Inertia::zero(model.graph);
@@ -139,7 +139,7 @@ impl<'g> NoninertialTerms<'g> {
             forces.iter().any(|force| !d.differentiate(*force).is_zero())
         };
         let inertial = (0..model.nv()).map(forces_depend_on_acceleration).collect();
-        NoninertialTerms {
+        TermsWithoutInertialForces {
             forces: symbolic::configuration_and_velocity_derivatives(model, &forces),
             inertial,
         }
@@ -160,7 +160,7 @@ fn are_zero_columns(of: &[Vec<Expr<'_>>], first: usize) -> bool {
 impl<'g> InvariantColumns<'g> {
     /// Replaces the columns of the force derivatives by the known columns of the acceleration derivatives;
     /// the other columns of the acceleration derivatives are computed from the force derivatives.
-    pub fn replace_known_columns(&self, forces: &mut ForceDerivatives<'g>) {
+    pub fn insert_invariant_columns(&self, forces: &mut ForceDerivatives<'g>) {
         for (to, from) in [(&mut forces.by_q, &self.by_q), (&mut forces.by_v, &self.by_v)] {
             for (k, column) in from {
                 for (row, entry) in to.iter_mut().zip(column) {

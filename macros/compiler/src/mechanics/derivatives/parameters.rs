@@ -43,10 +43,10 @@ pub fn forward_dynamics<'g>(model: &Model<'g>, joints: &[Joint<'g>], tau: &[Expr
         _ => None,
     };
     let columns = inverse_dynamics(model, joints);
-    let solve_for_accelerations = |column: &Vec<Expr<'g>>| {
+    let solve_for_acceleration_derivatives = |column: &Vec<Expr<'g>>| {
         factor.solve_factored(
             substitute_symbols_in_all(column, &acceleration_of_symbol).iter().map(|e| -*e).collect(),
         )
     };
-    columns.iter().map(solve_for_accelerations).collect()
+    columns.iter().map(solve_for_acceleration_derivatives).collect()
 }

@@ -27,7 +27,7 @@ use super::super::crba::{Matrix, momentum};
 use super::super::{acceleration_symbols, constraints, rnea, velocity_symbols};
 use super::columns::{DofMotionChanges, cross, derivative_columns, link_motions};
 use super::subtree::{SubtreeMassAndWrench, subtree_sums, sums_of_single_body};
-use super::{analytic, has_constant_subspaces, symbolic};
+use super::{analytic, supports_recursive_derivatives, symbolic};
 use crate::expr::{Expr, Sym3, Vec3};
 use crate::kinematics::{Joint, SpatialVector, twists};
 use crate::mechanics::passive::passive_forces;
@@ -56,7 +56,7 @@ pub fn force_factor_symbols<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
 /// Returns the second derivatives of `λᵀ τ` of inverse dynamics by recursion, in up to `most` lanes, or
 /// `None` if a motion subspace is not constant in link axes.
 pub fn hessian_by_recursion<'g>(model: &Model<'g>, joints: &[Joint<'g>], most: usize) -> Option<Hessian<'g>> {
-    if !has_constant_subspaces(model) {
+    if !supports_recursive_derivatives(model) {
         return None;
     }
     let (v, a, lambda) = (velocity_symbols(model), acceleration_symbols(model), force_factor_symbols(model));
@@ -125,7 +125,7 @@ pub fn hessian_of_power<'g>(model: &Model<'g>, tau: &[Expr<'g>], lambda: &[Expr<
 }
 
 /// Second derivatives of the power `λᵀ τ` of the input forces.
-pub struct InputHessian<'g> {
+pub struct InputPowerHessian<'g> {
     /// Second derivatives with respect to configuration and velocity.
     pub state: Hessian<'g>,
     /// Mixed derivatives with respect to configuration (rows) and input (columns).
@@ -137,7 +137,7 @@ pub struct InputHessian<'g> {
 }
 
 /// Returns the second derivatives of the power `λᵀ τ` of the input forces `tau`.
-pub fn hessian_of_input_power<'g>(model: &Model<'g>, tau: &[Expr<'g>]) -> InputHessian<'g> {
+pub fn hessian_of_input_power<'g>(model: &Model<'g>, tau: &[Expr<'g>]) -> InputPowerHessian<'g> {
     let lambda = force_factor_symbols(model);
     let zero = model.graph.zero();
     let power = tau.iter().zip(&lambda).fold(zero, |sum, (tau, factor)| sum + *tau * *factor);
@@ -146,7 +146,7 @@ pub fn hessian_of_input_power<'g>(model: &Model<'g>, tau: &[Expr<'g>]) -> InputH
     let mixed = symbolic::configuration_and_velocity_derivatives(model, &by_u);
     let transposed_matrix =
         |m: Matrix<'g>| (0..model.nv()).map(|k| m.iter().map(|row| row[k]).collect()).collect();
-    InputHessian {
+    InputPowerHessian {
         state: hessian_of_power(model, tau, &lambda),
         qu: transposed_matrix(mixed.by_q),
         vu: transposed_matrix(mixed.by_v),
@@ -259,7 +259,7 @@ fn subtree_sums_with_virtual_twists<'g>(
     for ((link, own), w) in model.links.iter().zip(own).zip(virtual_twists) {
         let p = momentum(&link.inertia, w);
         let zero = Vec3::zero(model.graph);
-        let n = sums_of_single_body(&link.inertia, own, 2.0).transposed_velocity_map(w);
+        let n = sums_of_single_body(&link.inertia, own, 2.0).transposed_velocity_derivative_moment(w);
         changes.push(inertia_rate(&link.inertia, w, p.linear));
         wrenches.push([p, SpatialVector { linear: zero, angular: n }]);
     }
@@ -413,13 +413,13 @@ impl<'g> DofHessianContribution<'g> {
         let momentum_of_twist = |x: &SpatialVector<'g>| momentum(&plain.inertia, x);
         DofHessianContribution {
             by_q: momentum_of_twist(&column.second)
-                .plus(&plain.velocity_map(&column.first))
+                .plus(&plain.velocity_derivative_wrench(&column.first))
                 .plus(&analytic::cross_force(s, &plain.wrench)),
             factored: momentum_of_twist(&own.factor).plus(&analytic::cross_force(s, &sums.momentum)),
-            moment_by_q: plain.transposed_velocity_map(&own.factor)
+            moment_by_q: plain.transposed_velocity_derivative_moment(&own.factor)
                 + sums.inertia_rate_and_momentum_moment(&column.first)
                 + s.angular.cross(sums.moment),
-            by_v: momentum_of_twist(&column.rate).plus(&plain.velocity_map(s)),
+            by_v: momentum_of_twist(&column.rate).plus(&plain.velocity_derivative_wrench(s)),
             moment_by_v: sums.inertia_rate_and_momentum_moment(s),
             momentum: momentum_of_twist(s),
         }

@@ -26,7 +26,7 @@ pub struct SubtreeMassAndWrench<'g> {
 
 impl<'g> SubtreeMassAndWrench<'g> {
     /// Returns the velocity map of a motion `x`: a force and a moment.
-    pub fn velocity_map(&self, x: &SpatialVector<'g>) -> SpatialVector<'g> {
+    pub fn velocity_derivative_wrench(&self, x: &SpatialVector<'g>) -> SpatialVector<'g> {
         SpatialVector {
             linear: x.angular.cross(self.momentum),
             angular: minus_trace(&self.moments) * -x.angular,
@@ -34,7 +34,7 @@ impl<'g> SubtreeMassAndWrench<'g> {
     }
 
     /// Returns the transposed velocity map of a motion `x`. It is a moment; the corresponding force is zero.
-    pub fn transposed_velocity_map(&self, x: &SpatialVector<'g>) -> Vec3<'g> {
+    pub fn transposed_velocity_derivative_moment(&self, x: &SpatialVector<'g>) -> Vec3<'g> {
         self.momentum.cross(x.linear) + minus_trace(&self.moments.transpose()) * -x.angular
     }
 }

@@ -8,7 +8,7 @@
 //! of `H` are the trunk's columns of `M⁻¹`. The first term is sparse: it has a block for each limb.
 
 use super::super::crba::Matrix;
-use super::super::ldl::elimination_order;
+use super::super::ldl::order_from_leaves_to_root;
 use super::factor::MatrixFactorisation;
 use crate::expr::Expr;
 use crate::kinematics::Joint;
@@ -58,7 +58,7 @@ impl TrunkLimbPartition {
     /// Returns the partition with the given trunk, or `None` if there is only one limb or the mass matrix
     /// couples different limbs.
     pub fn new(joints: &[Joint<'_>], mass: &Matrix<'_>, is_trunk: &[bool]) -> Option<TrunkLimbPartition> {
-        let order = elimination_order(joints, mass.len());
+        let order = order_from_leaves_to_root(joints, mass.len());
         let mut limbs: Vec<Limb> = Vec::new();
         let mut limb_of_joint: Vec<Option<usize>> = Vec::with_capacity(joints.len());
         let mut limb_of = vec![None; mass.len()];
@@ -93,7 +93,7 @@ impl TrunkLimbPartition {
 
     /// Returns the partition in which all velocities belong to the trunk.
     pub fn partition_with_trunk_only(joints: &[Joint<'_>], nv: usize) -> TrunkLimbPartition {
-        TrunkLimbPartition { velocities: elimination_order(joints, nv), limbs: Vec::new() }
+        TrunkLimbPartition { velocities: order_from_leaves_to_root(joints, nv), limbs: Vec::new() }
     }
 
     /// Returns the velocities of each limb in ascending order.

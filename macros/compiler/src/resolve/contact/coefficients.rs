@@ -72,8 +72,12 @@ pub(super) fn read_contact_coefficients<'g>(
                 return None;
             }
             _ => {
-                let friction_pair_text = || format!("the friction of `{name}` and its stiction");
-                scope.record_parameter_condition(Rule::Order, friction_pair_text, &[friction, stiction]);
+                let describe_friction_and_stiction = || format!("the friction of `{name}` and its stiction");
+                scope.record_parameter_condition(
+                    Rule::Order,
+                    describe_friction_and_stiction,
+                    &[friction, stiction],
+                );
             }
         }
     }

@@ -5,8 +5,8 @@ use crate::diag::{Diagnostics, Place};
 use crate::expr::Vec3;
 use crate::hull::{Hull, MAX_VERTICES};
 use crate::resolve::scope::{Placed, Scope};
-use crate::syntax::contact::select_collisions;
-use crate::syntax::{self, Collision, ExprKind, Name, Shape};
+use crate::syntax::contact::collision_shape_indices;
+use crate::syntax::{self, CollisionShape, ExprKind, Name, Shape};
 
 /// Resolves the collision geometry of a link, `link.collision()`, or of all links, `collision()`.
 pub fn read_collisions<'g>(
@@ -21,8 +21,8 @@ pub fn read_collisions<'g>(
         None => None,
     };
     let name = link.and_then(|link| link.as_name());
-    let selected = select_collisions(e, known).unwrap_or_default();
-    let parts: Vec<&Collision> = selected.into_iter().map(|k| &known[k]).collect();
+    let selected = collision_shape_indices(e, known).unwrap_or_default();
+    let parts: Vec<&CollisionShape> = selected.into_iter().map(|k| &known[k]).collect();
     if parts.is_empty() {
         let whose = name.map_or_else(|| "this mechanism".to_string(), |name| format!("`{name}`"));
         cx.report_error(e.place.clone(), format!("{whose} has no collision geometry"))
@@ -48,7 +48,7 @@ pub fn read_collisions<'g>(
 /// Returns the surface of a shape of the collision geometry, with its pose.
 fn surface_of_collision<'g>(
     scope: &Scope<'_, 'g>,
-    part: &Collision,
+    part: &CollisionShape,
     frame: Option<&Placed<'g>>,
     place: &Place,
     cx: &mut Diagnostics,

@@ -90,7 +90,7 @@ fn declared_coordinate<'g>(
     let name = e.as_name().unwrap_or("");
     let found =
         kinematics.coordinates.iter().find(|(n, ..)| n == name && coordinate_names().any(|k| k == name));
-    if found.is_none() && (name.is_empty() || scope.is_first_report(name, cx)) {
+    if found.is_none() && (name.is_empty() || scope.record_first_report(name, cx)) {
         cx.report_error(e.place.clone(), "expected a coordinate of the surface")
             .suggest_name(name, coordinate_names())
             .add_help("declare it as a field of its own: `u: Coordinate`");

@@ -62,7 +62,7 @@ fn surface_piece<'g>(
 ) -> Option<Piece<'g>> {
     let (index, pose) = pose_relative_to_named_frame(frames, frame.link, &frame.pose)?;
     let at = entries_of_vectors(&[pose.translation]);
-    let round_piece_numbers = |axis, numbers: &[Expr<'g>]| {
+    let numbers_of_axial_shape = |axis, numbers: &[Expr<'g>]| {
         [entries_of_vectors(&[pose.translation, pose.rotation.vector_in_parent_axes(axis)]), numbers.to_vec()]
             .concat()
     };
@@ -70,20 +70,22 @@ fn surface_piece<'g>(
         [at.clone(), entries_by_row(&pose.rotation.rotation_matrix()), lengths.to_vec()].concat()
     };
     let (kind, numbers) = match form {
-        SurfaceForm::Circle(r, n) => (PieceShape::Ring, round_piece_numbers(*n, &[*r])),
-        SurfaceForm::Torus(r, tube, n) => (PieceShape::Torus, round_piece_numbers(*n, &[*r, *tube])),
+        SurfaceForm::Circle(r, n) => (PieceShape::Ring, numbers_of_axial_shape(*n, &[*r])),
+        SurfaceForm::Torus(r, tube, n) => (PieceShape::Torus, numbers_of_axial_shape(*n, &[*r, *tube])),
         SurfaceForm::Sphere(r) => (PieceShape::Sphere, [at.clone(), vec![*r]].concat()),
         SurfaceForm::Bowl(r) => (PieceShape::Bowl, [at.clone(), vec![*r]].concat()),
         SurfaceForm::Ellipsoid(lengths) => (PieceShape::Ellipsoid, numbers_of_oriented_shape(lengths)),
         SurfaceForm::Cuboid(lengths) => (PieceShape::Cuboid, numbers_of_oriented_shape(lengths)),
-        SurfaceForm::Plane(n) => (PieceShape::Plane, round_piece_numbers(*n, &[])),
+        SurfaceForm::Plane(n) => (PieceShape::Plane, numbers_of_axial_shape(*n, &[])),
         SurfaceForm::Cylinder(r, n) | SurfaceForm::Tube(r, n) => {
-            (PieceShape::Pipe, round_piece_numbers(*n, &[*r]))
+            (PieceShape::Pipe, numbers_of_axial_shape(*n, &[*r]))
         }
-        SurfaceForm::Drum(r, length, n) => (PieceShape::Cylinder, round_piece_numbers(*n, &[*r, *length])),
-        SurfaceForm::Capsule(r, length, n) => (PieceShape::Capsule, round_piece_numbers(*n, &[*r, *length])),
+        SurfaceForm::Drum(r, length, n) => (PieceShape::Cylinder, numbers_of_axial_shape(*n, &[*r, *length])),
+        SurfaceForm::Capsule(r, length, n) => {
+            (PieceShape::Capsule, numbers_of_axial_shape(*n, &[*r, *length]))
+        }
         SurfaceForm::Cone(half, n) | SurfaceForm::Funnel(half, n) => {
-            (PieceShape::Funnel, round_piece_numbers(*n, &[*half]))
+            (PieceShape::Funnel, numbers_of_axial_shape(*n, &[*half]))
         }
         SurfaceForm::Point => (PieceShape::Point, at.clone()),
         SurfaceForm::Terrain(terrain) => {

@@ -28,9 +28,9 @@ impl<'g> Scope<'_, 'g> {
         Some(sum_forces_by_axes(&kinematics.contact_loads.get(name)?.forces))
     }
 
-    /// Resolves `resolve_contact_moment(name)`: the moment of friction of the second surface on the first,
+    /// Resolves `contact_moment(name)`: the moment of friction of the second surface on the first,
     /// against spin and rolling.
-    pub fn resolve_contact_moment(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+    pub fn contact_moment(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let name = self.contact_name_argument(call, cx)?;
         let kinematics = &self.kinematics;
         let moments = &kinematics.contact_loads.get(name)?.moments;
@@ -55,7 +55,7 @@ impl<'g> Scope<'_, 'g> {
             return None;
         }
         if !kinematics.contact_loads.contains_key(name) {
-            if self.is_first_report(name, cx) {
+            if self.record_first_report(name, cx) {
                 let error = cx.report_error(e.place.clone(), format!("unknown contact `{name}`"));
                 error.suggest_name(name, contact_names());
                 if error.has_no_help() {

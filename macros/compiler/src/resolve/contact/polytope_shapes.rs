@@ -52,14 +52,14 @@ fn ordered_corners(vertices: &[[f64; 3]], normal: [f64; 3], corners: &[usize]) -
 
 /// Returns the edges between the faces; `None` if a side of a face belongs to no other face.
 fn edges_of_faces(vertices: &[[f64; 3]], faces: &[PolytopeFace]) -> Option<Vec<PolytopeEdge>> {
-    let sides = |face: &PolytopeFace| -> Vec<[u8; 2]> {
+    let vertex_pairs_of_sides = |face: &PolytopeFace| -> Vec<[u8; 2]> {
         let next = face.corners.iter().cycle().skip(1);
         face.corners.iter().zip(next).map(|(from, to)| [*from, *to]).collect()
     };
     let mut edges = Vec::new();
     for (k, face) in faces.iter().enumerate() {
-        for [from, to] in sides(face) {
-            let other = faces.iter().position(|other| sides(other).contains(&[to, from]))?;
+        for [from, to] in vertex_pairs_of_sides(face) {
+            let other = faces.iter().position(|other| vertex_pairs_of_sides(other).contains(&[to, from]))?;
             if from > to {
                 continue;
             }

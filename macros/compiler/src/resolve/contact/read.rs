@@ -95,25 +95,25 @@ fn surface_form_from_numbers<'g>(
     numbers: &[Expr<'g>],
     n: Vec3<'g>,
 ) -> Option<SurfaceForm<'g>> {
-    let number_with_index = |k: usize| numbers.get(k).copied();
+    let number_at_index = |k: usize| numbers.get(k).copied();
     Some(match id {
-        SurfaceId::Circle => SurfaceForm::Circle(number_with_index(0)?, n),
-        SurfaceId::Torus => SurfaceForm::Torus(number_with_index(0)?, number_with_index(1)?, n),
-        SurfaceId::Sphere => SurfaceForm::Sphere(number_with_index(0)?),
+        SurfaceId::Circle => SurfaceForm::Circle(number_at_index(0)?, n),
+        SurfaceId::Torus => SurfaceForm::Torus(number_at_index(0)?, number_at_index(1)?, n),
+        SurfaceId::Sphere => SurfaceForm::Sphere(number_at_index(0)?),
         SurfaceId::Ellipsoid => {
-            SurfaceForm::Ellipsoid([number_with_index(0)?, number_with_index(1)?, number_with_index(2)?])
+            SurfaceForm::Ellipsoid([number_at_index(0)?, number_at_index(1)?, number_at_index(2)?])
         }
         SurfaceId::Plane => SurfaceForm::Plane(n),
-        SurfaceId::Bowl => SurfaceForm::Bowl(number_with_index(0)?),
-        SurfaceId::Cylinder => SurfaceForm::Cylinder(number_with_index(0)?, n),
-        SurfaceId::Drum => SurfaceForm::Drum(number_with_index(0)?, number_with_index(1)?, n),
-        SurfaceId::Tube => SurfaceForm::Tube(number_with_index(0)?, n),
-        SurfaceId::Cone => SurfaceForm::Cone(number_with_index(0)?, n),
-        SurfaceId::Funnel => SurfaceForm::Funnel(number_with_index(0)?, n),
+        SurfaceId::Bowl => SurfaceForm::Bowl(number_at_index(0)?),
+        SurfaceId::Cylinder => SurfaceForm::Cylinder(number_at_index(0)?, n),
+        SurfaceId::Drum => SurfaceForm::Drum(number_at_index(0)?, number_at_index(1)?, n),
+        SurfaceId::Tube => SurfaceForm::Tube(number_at_index(0)?, n),
+        SurfaceId::Cone => SurfaceForm::Cone(number_at_index(0)?, n),
+        SurfaceId::Funnel => SurfaceForm::Funnel(number_at_index(0)?, n),
         SurfaceId::Cuboid => {
-            SurfaceForm::Cuboid([number_with_index(0)?, number_with_index(1)?, number_with_index(2)?])
+            SurfaceForm::Cuboid([number_at_index(0)?, number_at_index(1)?, number_at_index(2)?])
         }
-        SurfaceId::Capsule => SurfaceForm::Capsule(number_with_index(0)?, number_with_index(1)?, n),
+        SurfaceId::Capsule => SurfaceForm::Capsule(number_at_index(0)?, number_at_index(1)?, n),
         // The arguments of these surfaces are not numbers and a direction.
         SurfaceId::ParametricSurface | SurfaceId::Terrain | SurfaceId::Hull => return None,
     })

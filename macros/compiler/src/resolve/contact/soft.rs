@@ -9,7 +9,7 @@ use crate::expr::{Expr, Extreme, Vec3};
 use crate::kinematics::velocity_gradient;
 use crate::language::Key;
 use crate::mechanism::{Load, Rule};
-use crate::resolve::element_forces::Forces;
+use crate::resolve::element_forces::ElementForces;
 use crate::resolve::scope::{AllowedQuantities, ContactLoads, Context, Scope};
 use crate::syntax::{self, WrittenArguments};
 
@@ -34,13 +34,13 @@ impl<'g> ContactCompliance<'g> {
         point: &CandidatePoint<'g>,
         coefficients: ContactCoefficients<'g>,
         exerted: &mut ContactLoads<'g>,
-    ) -> Forces<'g> {
+    ) -> ElementForces<'g> {
         let g = point.gap.graph();
         let overlap = (-point.gap).minimum_or_maximum(Extreme::Max, g.zero());
         let root = if self.hertz { (overlap + g.num(ROOT_OFFSET)).sqrt() } else { g.num(1.0) };
         let elastic = self.stiffness * overlap * root;
         let energy = elastic * overlap * g.num(if self.hertz { 0.4 } else { 0.5 });
-        let mut forces = Forces::forces_of_potentials([energy]);
+        let mut forces = ElementForces::forces_of_potentials([energy]);
         let [(normal, rate), tangents @ ..] = point.rates;
         // Surfaces do not pull at each other.
         let damping = (-(elastic * self.dissipation * rate)).minimum_or_maximum(Extreme::Max, -elastic);
@@ -116,7 +116,7 @@ fn add_friction_moments<'g>(
     coefficient: Expr<'g>,
     pressure: Expr<'g>,
     speed: Expr<'g>,
-    forces: &mut Forces<'g>,
+    forces: &mut ElementForces<'g>,
 ) -> Vec<Vec3<'g>> {
     if coefficient.is_zero() {
         return Vec::new();

@@ -25,8 +25,8 @@ pub fn resolve_stops<'g>(
     let g = scope.graph;
     let resolve_bound_value = |e: &syntax::Expr| match turns && e.place.file.is_none() {
         // Errors are reported by the pass that reads the limit.
-        true => scope.resolve_angle_in_radians(e, &mut Diagnostics::unprinted_diagnostics()),
-        false => scope.resolve_scalar(e, &mut Diagnostics::unprinted_diagnostics()),
+        true => scope.resolve_angle_in_radians(e, &mut Diagnostics::silent_diagnostics()),
+        false => scope.resolve_scalar(e, &mut Diagnostics::silent_diagnostics()),
     };
     let stop_at_bound = |(key, side): (Key, f64)| {
         let bound = resolve_bound_value(limit.arguments.expression_of_key(key)?)?;

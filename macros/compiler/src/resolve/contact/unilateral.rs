@@ -13,7 +13,7 @@ use crate::expr::{Expr, Vec3};
 use crate::kinematics::{time_derivatives_along_motion, velocity_gradient};
 use crate::language::{BodyOrInertiaMethod, OtherKind};
 use crate::mechanism::{Contact, Model, PolytopePair, Quantity};
-use crate::resolve::element_forces::Forces;
+use crate::resolve::element_forces::ElementForces;
 use crate::resolve::power::{is_power_used, power_of_element};
 use crate::resolve::scope::{ContactLoads, ElementPower, Scope, VectorTerms};
 use crate::syntax::contact::link_in_collision_expression;
@@ -44,7 +44,7 @@ pub struct ResolvedContact<'g> {
     /// Pairs of polytopes whose features determine contact points.
     pub polytopes: Vec<PolytopePair<'g>>,
     /// Forces of a compliant contact.
-    pub forces: Forces<'g>,
+    pub forces: ElementForces<'g>,
     /// Forces and moments of the second surface on the first.
     pub loads: ContactLoads<'g>,
     /// Surfaces of both sides.
@@ -75,7 +75,14 @@ pub fn resolve_contact<'g>(
         None => None,
     };
     let mut polytopes = Vec::new();
-    let points = separable_points(scope, model, contact, (&firsts, &seconds), &mut polytopes, cx)?;
+    let points = contact_points_with_variable_distance(
+        scope,
+        model,
+        contact,
+        (&firsts, &seconds),
+        &mut polytopes,
+        cx,
+    )?;
     if soft.is_some() && !polytopes.is_empty() {
         cx.report_error(contact.second.place.clone(), "contacts of these surfaces are rigid")
             .add_help("remove `stiffness` or `hertz`, or approximate a surface by others, such as spheres");
@@ -111,7 +118,7 @@ pub fn resolve_contact<'g>(
 
 /// Returns the points where the surfaces of a contact may touch, without those whose distance is constant,
 /// and adds the pairs of polytopes among the surfaces.
-fn separable_points<'g>(
+fn contact_points_with_variable_distance<'g>(
     scope: &Scope<'_, 'g>,
     model: &Model<'g>,
     contact: &syntax::Contact,

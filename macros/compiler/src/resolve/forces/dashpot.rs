@@ -2,7 +2,7 @@
 
 use crate::diag::Diagnostics;
 use crate::mechanism::{Dashpot, Pose, Rule};
-use crate::resolve::element_forces::Forces;
+use crate::resolve::element_forces::ElementForces;
 use crate::resolve::scope::{AllowedQuantities, Context, Scope};
 use crate::resolve::terms::ForceElementCoordinate;
 use crate::syntax::{Action, Key};
@@ -13,7 +13,7 @@ pub fn dashpot_force<'g>(
     action: &Action,
     on: ForceElementCoordinate<'g>,
     cx: &mut Diagnostics,
-) -> Option<Forces<'g>> {
+) -> Option<ElementForces<'g>> {
     let damping = action.expression_of_key(Key::Damping);
     if let (Some(written), Some(on)) = (damping, on.coordinate) {
         let damping = scope.resolve_scalar(written, cx)?;
@@ -26,7 +26,7 @@ pub fn dashpot_force<'g>(
             || format!("the damping of `{}`", action.name.text),
             &[damping],
         );
-        return Some(Forces { dashpots: vec![Dashpot { on, damping }], ..Forces::default() });
+        return Some(ElementForces { dashpots: vec![Dashpot { on, damping }], ..ElementForces::default() });
     }
     let rate = on.stretch(scope)?.rate;
     let force = match damping {
@@ -38,5 +38,5 @@ pub fn dashpot_force<'g>(
             scope.call_in_context(context, |scope| scope.resolve_scalar(written, cx))?
         }
     };
-    Some(Forces::resisting_force(rate, force))
+    Some(ElementForces::resisting_force(rate, force))
 }

@@ -3,7 +3,7 @@
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{Expr, Function};
 use crate::mechanism::Rule;
-use crate::resolve::element_forces::Forces;
+use crate::resolve::element_forces::ElementForces;
 use crate::resolve::scope::Scope;
 use crate::resolve::terms::ForceElementCoordinate;
 use crate::syntax::{self, Action, Key};
@@ -17,7 +17,7 @@ pub fn friction_force<'g>(
     action: &Action,
     on: ForceElementCoordinate<'g>,
     cx: &mut Diagnostics,
-) -> Option<Forces<'g>> {
+) -> Option<ElementForces<'g>> {
     let all = [Key::Coulomb, Key::Stiction, Key::StribeckSpeed, Key::Viscous, Key::Speed];
     dry_friction(
         scope,
@@ -36,7 +36,7 @@ pub fn dry_friction<'g>(
     [coulomb, stiction, stribeck, viscous, speed]: [Option<&syntax::Expr>; 5],
     place: &Place,
     cx: &mut Diagnostics,
-) -> Option<Forces<'g>> {
+) -> Option<ElementForces<'g>> {
     let g = scope.graph;
     let mut resolve_scalar_or_default = |e: Option<&syntax::Expr>, default: f64| match e {
         Some(e) => scope.resolve_scalar(e, cx),
@@ -83,5 +83,5 @@ pub fn dry_friction<'g>(
         }
     };
     let force = dry * (v / v0).apply_function(Function::Tanh) + c * v;
-    Some(Forces::resisting_force(v, force))
+    Some(ElementForces::resisting_force(v, force))
 }

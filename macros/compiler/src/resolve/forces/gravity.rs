@@ -2,7 +2,7 @@
 
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Vec3};
-use crate::resolve::element_forces::Forces;
+use crate::resolve::element_forces::ElementForces;
 use crate::resolve::scope::Scope;
 use crate::resolve::terms::{ForceElementCoordinate, StretchWithRate, distance_between_points};
 use crate::syntax::{self, Action, ExprKind, Key, Target};
@@ -13,10 +13,10 @@ pub fn attraction_force<'g>(
     action: &Action,
     on: ForceElementCoordinate<'g>,
     cx: &mut Diagnostics,
-) -> Option<Forces<'g>> {
+) -> Option<ElementForces<'g>> {
     let stretch = on.stretch(scope)?;
     let strength = scope.resolve_scalar(action.expression_of_key(Key::Strength)?, cx)?;
-    Some(Forces::forces_of_potentials([attraction_energy(&stretch, strength)]))
+    Some(ElementForces::forces_of_potentials([attraction_energy(&stretch, strength)]))
 }
 
 /// Returns central gravity: between two bodies with a gravitational constant, or towards a point with a
@@ -25,7 +25,7 @@ pub fn central_gravity_force<'g>(
     scope: &Scope<'_, 'g>,
     action: &Action,
     cx: &mut Diagnostics,
-) -> Option<Forces<'g>> {
+) -> Option<ElementForces<'g>> {
     let Target::Between(first, second) = &action.on else {
         cx.report_error(
             action.on.source_position_of_target().clone(),
@@ -49,14 +49,14 @@ pub fn central_gravity_force<'g>(
             let torques = [(first, second, g * m1), (second, first, g * m2)];
             let torques =
                 torques.map(|(center, body, mu)| central_gravity_torque_energy(scope, center, body, mu, cx));
-            Some(Forces::forces_of_potentials([own].into_iter().chain(torques.into_iter().flatten())))
+            Some(ElementForces::forces_of_potentials([own].into_iter().chain(torques.into_iter().flatten())))
         }
         (None, Some(mu)) => {
             let m = mass(second);
             let mu = scope.resolve_scalar(mu, cx)?;
             let own = attraction_energy(&stretch?, mu * m?);
             let torque = central_gravity_torque_energy(scope, first, second, mu, cx);
-            Some(Forces::forces_of_potentials([own].into_iter().chain(torque)))
+            Some(ElementForces::forces_of_potentials([own].into_iter().chain(torque)))
         }
         _ => {
             cx.report_error(action.name.place.clone(), "gravity has a `constant` or a `mu`").add_help(

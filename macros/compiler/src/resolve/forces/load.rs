@@ -6,7 +6,7 @@ use crate::expr::replace::substitute_symbols;
 use crate::expr::{Expr as Value, Function, Vec3};
 use crate::kinematics::symbols_in;
 use crate::mechanism::{AccelerationForce, InputEffect, Load, Pose, Quantity, SumOfLinkVectors};
-use crate::resolve::element_forces::Forces;
+use crate::resolve::element_forces::ElementForces;
 use crate::resolve::scope::{AllowedQuantities, Context, Placed, PlacedElementKind, Scope};
 use crate::resolve::target::{ResolvedTarget, resolve_target};
 use crate::resolve::terms::{coordinate_stretch, distance_between_points};
@@ -17,7 +17,7 @@ pub fn force_or_torque_of_action<'g>(
     scope: &Scope<'_, 'g>,
     action: &Action,
     cx: &mut Diagnostics,
-) -> Option<Forces<'g>> {
+) -> Option<ElementForces<'g>> {
     let torque = action.kind.row().torque;
     let direction = action.expression_of_key(if torque { Key::About } else { Key::Along });
     match (&action.on, action.expression_of_key(Key::Value)) {
@@ -40,7 +40,7 @@ fn force_of_expression_value<'g>(
     value: &Expr,
     torque: bool,
     cx: &mut Diagnostics,
-) -> Option<Forces<'g>> {
+) -> Option<ElementForces<'g>> {
     if let Some(direction) = direction {
         cx.report_error(direction.place.clone(), "a value has a direction of its own")
             .add_help("write the direction into the value: `value = magnitude * x`");
@@ -73,7 +73,7 @@ fn force_of_expression_value<'g>(
         true => twist.angular,
         false => twist.linear + twist.angular.cross(place.pose.translation),
     };
-    let mut all = Forces::default();
+    let mut all = ElementForces::default();
     for k in (0..3).filter(|k| !force[*k].is_zero()) {
         let component = load_split_by_acceleration(rate[k], force[k], &value.place, cx)?;
         all.loads.extend(component.loads);
@@ -89,7 +89,7 @@ fn load_conjugate_to_rate<'g>(
     rate: Value<'g>,
     value: &Expr,
     cx: &mut Diagnostics,
-) -> Option<Forces<'g>> {
+) -> Option<ElementForces<'g>> {
     let context = Context::new(AllowedQuantities::Acceleration, Some((None, Pose::identity(scope.graph))));
     let force = scope.call_in_context(context, |scope| scope.resolve_scalar(value, cx))?;
     load_split_by_acceleration(rate, force, &value.place, cx)
@@ -104,7 +104,7 @@ fn force_between<'g>(
     along: Option<&Expr>,
     value: Option<&Expr>,
     cx: &mut Diagnostics,
-) -> Option<Forces<'g>> {
+) -> Option<ElementForces<'g>> {
     if let Some(along) = along {
         cx.report_error(along.place.clone(), "a force between two points acts along their line")
             .add_help("remove this argument, or let a force act on each of two bodies");
@@ -129,7 +129,7 @@ fn resolve_input_force<'g>(
     direction: Option<&Expr>,
     torque: bool,
     cx: &mut Diagnostics,
-) -> Option<Forces<'g>> {
+) -> Option<ElementForces<'g>> {
     let mut refuse_direction = |what: &str| {
         if let Some(direction) = direction {
             cx.report_error(direction.place.clone(), format!("the {what} determines the direction"))
@@ -165,13 +165,13 @@ fn resolve_input_force<'g>(
             }
         }
     };
-    Some(Forces { input: Some(input), ..Forces::default() })
+    Some(ElementForces { input: Some(input), ..ElementForces::default() })
 }
 
 /// Returns the input with this index in `u`, as a force on a rate.
-pub fn load_of_input<'g>(index: usize, rate: Value<'g>) -> Forces<'g> {
+pub fn load_of_input<'g>(index: usize, rate: Value<'g>) -> ElementForces<'g> {
     let force = Quantity::Input(index).expr(rate.graph());
-    Forces { loads: vec![Load { rate, force, dissipative: false }], ..Forces::default() }
+    ElementForces { loads: vec![Load { rate, force, dissipative: false }], ..ElementForces::default() }
 }
 
 /// Returns a force on a rate. Terms that are linear in the accelerations are separated from the others.
@@ -180,9 +180,9 @@ pub fn load_split_by_acceleration<'g>(
     force: Value<'g>,
     place: &Place,
     cx: &mut Diagnostics,
-) -> Option<Forces<'g>> {
+) -> Option<ElementForces<'g>> {
     let graph = force.graph();
-    let mut forces = Forces::default();
+    let mut forces = ElementForces::default();
     let acceleration_symbol = |s| match Quantity::from_symbol(s) {
         Quantity::Acceleration(k) => Some((s, k)),
         _ => None,

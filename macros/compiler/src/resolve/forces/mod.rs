@@ -12,7 +12,7 @@ pub use inerter::inertance_force;
 pub use load::{load_of_input, load_split_by_acceleration};
 pub use spring::{SpringLaw, spring_force_of_law};
 
-use super::element_forces::Forces;
+use super::element_forces::ElementForces;
 use super::scope::Scope;
 use super::target::{ResolvedTarget, resolve_target};
 use super::terms::{ForceElementCoordinate, distance_between_points};
@@ -41,7 +41,7 @@ pub fn forces_of_element<'g>(
     scope: &Scope<'_, 'g>,
     action: &Action,
     cx: &mut Diagnostics,
-) -> Option<Forces<'g>> {
+) -> Option<ElementForces<'g>> {
     let forces = match action.kind {
         ForceKind::Gravity => return gravity::central_gravity_force(scope, action, cx),
         ForceKind::Force | ForceKind::Torque => return load::force_or_torque_of_action(scope, action, cx),

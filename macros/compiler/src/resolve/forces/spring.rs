@@ -7,7 +7,7 @@ use crate::expr::{Expr, Extreme, Function, Node, Symbol};
 use crate::kinematics::symbols_in;
 use crate::language::Callable;
 use crate::mechanism::{Pose, Quantity, Spring};
-use crate::resolve::element_forces::Forces;
+use crate::resolve::element_forces::ElementForces;
 use crate::resolve::scope::{AllowedQuantities, Context, Scope};
 use crate::resolve::terms::{ForceElementCoordinate, StretchWithRate};
 use crate::syntax::{self, Action, ExprKind, Key};
@@ -32,7 +32,7 @@ pub fn spring_force<'g>(
     action: &Action,
     on: ForceElementCoordinate<'g>,
     cx: &mut Diagnostics,
-) -> Option<Forces<'g>> {
+) -> Option<ElementForces<'g>> {
     let law = match action.written_law()? {
         (Key::Force, e) => SpringLaw::Force(e),
         (Key::Energy, e) => SpringLaw::Energy(e),
@@ -42,7 +42,7 @@ pub fn spring_force<'g>(
         let stiffness = scope.resolve_scalar(stiffness, cx);
         let free = free_length(scope, action, angle, cx);
         let spring = Spring { on, stiffness: stiffness?, free: free? };
-        return Some(Forces { springs: vec![spring], ..Forces::default() });
+        return Some(ElementForces { springs: vec![spring], ..ElementForces::default() });
     }
     let angle = on.angle;
     let stretch = on.stretch(scope)?;
@@ -57,7 +57,7 @@ pub fn spring_force_of_law<'g>(
     law: &SpringLaw<'_>,
     free: Expr<'g>,
     cx: &mut Diagnostics,
-) -> Option<Forces<'g>> {
+) -> Option<ElementForces<'g>> {
     let g = scope.graph;
     let length = if stretch.signed && !free.is_zero() {
         stretch.value.apply_function(Function::Abs)
@@ -76,7 +76,9 @@ pub fn spring_force_of_law<'g>(
         SpringLaw::Energy(e) => scope.call_in_context(context, |scope| scope.resolve_scalar(e, cx))?,
         SpringLaw::Force(e) => spring_energy_of_force(scope, e, &context, cx)?,
     };
-    Some(Forces::forces_of_potentials([substitute_symbols(energy, &|s| (s == symbol).then_some(value))]))
+    Some(ElementForces::forces_of_potentials([substitute_symbols(energy, &|s| {
+        (s == symbol).then_some(value)
+    })]))
 }
 
 /// Returns the energy of a force. A piecewise force with a condition on the stretch or the length has the

@@ -17,7 +17,7 @@ use crate::mechanism::{Chart, Constraint, Coordinate, InputEffect, MeasuredQuant
 use crate::syntax::RATE_OF_STATE;
 use crate::syntax::{Definition, Description, Expr, ExprKind, Rank};
 use infer::{DimensionEqualityReason, EquationOrigin, Inference, UnitMeaningOfName};
-use places::{DimensionedExpressions, DimensionedTask};
+use places::{DimensionedExpressions, ExpressionWithDimension};
 use std::collections::{BTreeMap, BTreeSet};
 use value::{InferredUnit, UnitSource};
 
@@ -53,7 +53,7 @@ pub fn infer_units(
             continue;
         }
         let (dimension, locals) = (Dimension::unknown_dimension(*v), Vec::new());
-        places.tasks.push(DimensionedTask { e: &output.value, dimension, unit: "", locals });
+        places.tasks.push(ExpressionWithDimension { e: &output.value, dimension, unit: "", locals });
     }
     // The rate of a state is the state per second.
     for (name, parameter) in &d.states {
@@ -67,7 +67,12 @@ pub fn infer_units(
         else {
             continue;
         };
-        places.tasks.push(DimensionedTask { e: &output.value, dimension, unit: "", locals: Vec::new() });
+        places.tasks.push(ExpressionWithDimension {
+            e: &output.value,
+            dimension,
+            unit: "",
+            locals: Vec::new(),
+        });
     }
     let sides = std::mem::take(&mut places.sides);
     solve_dimensions(places, &mut inference);
@@ -192,12 +197,12 @@ fn sort_by_dependency(definitions: &[Definition]) -> Vec<&Definition> {
 /// Infers from all uses. Uses that determine the dimension of a single name are first; the others are then
 /// compared with them.
 fn solve_dimensions<'a>(places: DimensionedExpressions<'a>, inference: &mut Inference<'a>) {
-    let partition_simple_tasks =
-        |tasks: Vec<DimensionedTask<'a>>| -> (Vec<DimensionedTask<'a>>, Vec<DimensionedTask<'a>>) {
-            tasks
-                .into_iter()
-                .partition(|task| task.locals.is_empty() && is_product_with_single_name(task.e, inference))
-        };
+    type Tasks<'a> = Vec<ExpressionWithDimension<'a>>;
+    let partition_simple_tasks = |tasks: Tasks<'a>| -> (Tasks<'a>, Tasks<'a>) {
+        tasks
+            .into_iter()
+            .partition(|task| task.locals.is_empty() && is_product_with_single_name(task.e, inference))
+    };
     let ((mut first, definitions), (places_first, others)) =
         (partition_simple_tasks(places.definitions), partition_simple_tasks(places.tasks));
     first.extend(places_first);
@@ -207,7 +212,7 @@ fn solve_dimensions<'a>(places: DimensionedExpressions<'a>, inference: &mut Infe
 }
 
 /// Infers dimensions from one expression and its expected dimension.
-fn infer_dimensions_of_task<'a>(task: DimensionedTask<'a>, inference: &mut Inference<'a>) {
+fn infer_dimensions_of_task<'a>(task: ExpressionWithDimension<'a>, inference: &mut Inference<'a>) {
     inference.locals = task.locals;
     let value = inference.equate_with_expected_dimension(
         task.e,

@@ -17,7 +17,7 @@ pub fn location_text_of_expression(d: &Description, e: &Expr) -> String {
 }
 
 /// Returns the solid that has an expression as an argument, with its syntax.
-pub fn solid_with_argument<'a>(d: &'a Description, e: &Expr) -> Option<(&'a Expr, String)> {
+pub fn solid_containing_argument<'a>(d: &'a Description, e: &Expr) -> Option<(&'a Expr, String)> {
     let inertias = d.bodies.iter().filter_map(|body| body.inertia.as_ref());
     inertias.flat_map(Expr::all_subexpressions).find_map(|call| {
         let ExprKind::Call(Callee { id: Some(Callable::Solid(solid)), .. }, arguments) = &call.kind else {

@@ -17,7 +17,7 @@ use crate::syntax::{
 };
 
 /// Expression whose dimension is known from its context.
-pub struct DimensionedTask<'a> {
+pub struct ExpressionWithDimension<'a> {
     /// Expression whose subexpressions are to be inferred.
     pub e: &'a Expr,
     /// Dimension that the context requires.
@@ -31,9 +31,9 @@ pub struct DimensionedTask<'a> {
 /// All expressions of a description, with their expected dimensions.
 pub struct DimensionedExpressions<'a> {
     /// Definitions, each after the definitions that it uses.
-    pub definitions: Vec<DimensionedTask<'a>>,
+    pub definitions: Vec<ExpressionWithDimension<'a>>,
     /// All other expressions with expected dimensions.
-    pub tasks: Vec<DimensionedTask<'a>>,
+    pub tasks: Vec<ExpressionWithDimension<'a>>,
     /// Ends of force elements, which may be given by vectors.
     pub points: Vec<&'a Expr>,
     /// Dimension of both sides of each declared constraint, by index; unused for pairs of surfaces.
@@ -135,7 +135,12 @@ pub fn collect_dimensioned_expressions<'a>(
 
 impl<'a> DimensionedExpressions<'a> {
     fn add_with_dimension(&mut self, e: &'a Expr, dimension: &Dimension, unit: &'static str) {
-        self.tasks.push(DimensionedTask { e, dimension: dimension.clone(), unit, locals: Vec::new() });
+        self.tasks.push(ExpressionWithDimension {
+            e,
+            dimension: dimension.clone(),
+            unit,
+            locals: Vec::new(),
+        });
     }
 
     fn add_all_with_dimension(
@@ -333,7 +338,7 @@ impl<'a> DimensionedExpressions<'a> {
                 _ => Vec::new(),
             };
             let e = if key == Key::Restitution { restitution_value_and_kind(e).0 } else { e };
-            self.tasks.push(DimensionedTask { e, dimension, unit, locals });
+            self.tasks.push(ExpressionWithDimension { e, dimension, unit, locals });
         }
     }
 
@@ -377,7 +382,7 @@ impl<'a> DimensionedExpressions<'a> {
                 ArgumentKind::Height => TERRAIN_COORDINATES.map(|name| (name, LENGTH.clone())).into(),
                 _ => Vec::new(),
             };
-            self.tasks.push(DimensionedTask { e, dimension, unit, locals });
+            self.tasks.push(ExpressionWithDimension { e, dimension, unit, locals });
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::infer::{
     DimensionEqualityReason, DimensionMismatch, EquationOrigin, Inference, UnitMeaningOfName,
 };
-use super::owner::{location_text_of_expression, solid_with_argument};
+use super::owner::{location_text_of_expression, solid_containing_argument};
 use super::si::describe_dimension;
 use crate::diag::{Diagnostic, Diagnostics};
 use crate::language::Builtin;
@@ -25,7 +25,7 @@ pub fn report_unit_contradictions(d: &Description, inference: &mut Inference<'_>
             continue;
         }
         shown.extend(names.iter().map(|(v, _)| *v));
-        let solid = solid_with_argument(d, mismatch.origin.expression);
+        let solid = solid_containing_argument(d, mismatch.origin.expression);
         if let Some((call, _)) = &solid {
             if solids.iter().any(|known| std::ptr::eq(*known, *call)) {
                 continue;

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 /// A shape of the collision geometry of a file's link.
 #[derive(Clone, Debug)]
-pub struct Collision {
+pub struct CollisionShape {
     /// Link, with the pose of the shape's centre on it.
     pub on: Endpoint,
     /// Shape of the collision geometry.
@@ -20,7 +20,7 @@ pub struct Collision {
     pub place: Place,
 }
 
-impl Collision {
+impl CollisionShape {
     /// Whether the shape is a mesh that has no convex hull.
     pub fn is_mesh_without_hull(&self) -> bool {
         self.shape == Shape::Mesh && self.hull.is_empty()
@@ -69,7 +69,7 @@ pub enum Shape {
 
 impl Shape {
     /// Returns the surface of the shape; a mesh collides as its convex hull.
-    pub fn surface(&self) -> SurfaceId {
+    pub fn surface_id(&self) -> SurfaceId {
         match self {
             Shape::Sphere(_) => SurfaceId::Sphere,
             Shape::Cuboid(_) => SurfaceId::Cuboid,
@@ -95,7 +95,7 @@ impl Shape {
 
 /// A shape of the visual geometry of a file's link.
 #[derive(Clone, Debug)]
-pub struct Visual {
+pub struct VisualShape {
     /// Link, with the pose of the shape's centre on it.
     pub on: Endpoint,
     /// Shape of the visual geometry.

@@ -19,7 +19,7 @@ pub use force::{
     Action, FileForceElement, FileForceLaw, FileForceQuantity, FileForceTarget, Target, Wrench,
     WrittenArguments,
 };
-pub use geometry::{Collision, Mesh, MeshVertices, Shape, Visual};
+pub use geometry::{CollisionShape, Mesh, MeshVertices, Shape, VisualShape};
 pub use structure::{Body, Endpoint, Frame, FreeCoordinate, Joint, MimicRelation, Particle, Point};
 
 /// Scalar type of the generated functions.
@@ -35,7 +35,7 @@ pub enum ScalarType {
 
 /// Attachment of the root of an imported file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Base {
+pub enum BaseAttachment {
     /// The root link is welded to the ground.
     Fixed,
     /// The root is connected to the ground by a free joint.
@@ -101,11 +101,11 @@ pub struct Description {
     /// Declared unilateral contacts.
     pub contacts: Vec<Contact>,
     /// Collision geometry of a file's links.
-    pub collisions: Vec<Collision>,
+    pub collisions: Vec<CollisionShape>,
     /// Whether the option `drawing` is set.
     pub drawing: bool,
     /// Visual geometry of a file's links, for the drawing.
-    pub visuals: Vec<Visual>,
+    pub visuals: Vec<VisualShape>,
     /// Solution method for constrained motion: multipliers or independent speeds.
     pub formulation: Formulation,
     /// Numbers of a file that were rounded by the option `snap`.

@@ -1,6 +1,6 @@
 //! Pairs of terms that several sums have in common.
 
-use super::{TermKey, Terms};
+use super::{TermWithoutCoefficient, Terms};
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -16,21 +16,21 @@ pub(super) struct SharedPairs {
 impl SharedPairs {
     /// Collects the pairs of terms of all sums, given the number of atoms.
     pub(super) fn from_sums(sums: &[Terms], atoms: usize) -> SharedPairs {
-        let index_of_key = |key: TermKey| match key {
-            TermKey::One => 0,
-            TermKey::Atom(a) => 1 + a,
-            TermKey::Sum(s) => 1 + atoms + s,
+        let dense_key_index = |key: TermWithoutCoefficient| match key {
+            TermWithoutCoefficient::One => 0,
+            TermWithoutCoefficient::Atom(a) => 1 + a,
+            TermWithoutCoefficient::Sum(s) => 1 + atoms + s,
         };
         // A term with a single use is not part of a shared pair.
         let mut uses = vec![0_u32; 1 + atoms + sums.len()];
         for (key, _) in sums.iter().flatten() {
-            uses[index_of_key(*key)] += 1;
+            uses[dense_key_index(*key)] += 1;
         }
         let mut all = Vec::new();
         let mut common = Terms::new();
         for (k, terms) in sums.iter().enumerate() {
             common.clear();
-            common.extend(terms.iter().filter(|(key, _)| uses[index_of_key(*key)] > 1));
+            common.extend(terms.iter().filter(|(key, _)| uses[dense_key_index(*key)] > 1));
             for (i, a) in common.iter().enumerate() {
                 all.extend(common[i + 1..].iter().map(|b| (TermPair::new(*a, *b), k)));
             }
@@ -75,7 +75,7 @@ pub(super) struct TermPair(u128);
 impl TermPair {
     /// Returns the pair of two terms in ascending order, except that the number 1 comes second, because a sum
     /// begins with a value.
-    pub(super) fn new(a: (TermKey, f64), b: (TermKey, f64)) -> TermPair {
+    pub(super) fn new(a: (TermWithoutCoefficient, f64), b: (TermWithoutCoefficient, f64)) -> TermPair {
         let [x, y] = [a.0.term_key_index(), b.0.term_key_index()];
         let swap = x == 0 || (y != 0 && y < x);
         let ((x, c), (y, d)) = if swap { ((y, b.1), (x, a.1)) } else { ((x, a.1), (y, b.1)) };

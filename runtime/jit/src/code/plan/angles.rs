@@ -26,7 +26,7 @@ impl AngleGroup {
 
     /// Returns the place of the angle in each lane, for programs whose values have one lane.
     #[cfg(any(test, target_arch = "aarch64"))]
-    pub fn lanes(&self) -> impl Iterator<Item = Place> {
+    pub fn lane_places(&self) -> impl Iterator<Item = Place> {
         self.sources.iter().flat_map(|(first, count)| (0..*count).map(|k| first.offset_place(k)))
     }
 
@@ -96,7 +96,7 @@ impl Planner<'_> {
     }
 
     /// Plans the computation of the angles, their sines and cosines.
-    pub(super) fn angles(&mut self, angles: &Angles) -> Result<(), String> {
+    pub(super) fn plan_angles(&mut self, angles: &Angles) -> Result<(), String> {
         let all = self.angles_with_padding(angles);
         if all.is_empty() {
             return Ok(());

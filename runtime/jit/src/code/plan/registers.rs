@@ -1,6 +1,6 @@
 //! Allocation of registers and of the work space.
 
-use super::{LaneStore, MemoryLocation, Place, Planner, Residence, Step, is_call};
+use super::{LaneStore, MemoryLocation, Place, Planner, Residence, Step, needs_function_call};
 use linkwork_compiler::expr::Symbol;
 use linkwork_compiler::lower::{Op, Operand};
 
@@ -8,10 +8,10 @@ use linkwork_compiler::lower::{Op, Operand};
 const SOON: usize = 12;
 
 impl Planner<'_> {
-    pub(super) fn instruction(&mut self, k: usize, stores: &[LaneStore]) -> Result<(), String> {
+    pub(super) fn plan_instruction(&mut self, k: usize, stores: &[LaneStore]) -> Result<(), String> {
         let op = self.program.instructions[k];
-        let operands = self.operands(k);
-        if is_call(&op) {
+        let operands = self.values_used_by_instruction(k);
+        if needs_function_call(&op) {
             (0..self.values.len()).for_each(|register| self.evict_value(register));
         } else {
             for j in &operands {
@@ -84,13 +84,15 @@ impl Planner<'_> {
     /// Returns the position of an operand that is not the value of an instruction of the body.
     pub(super) fn memory_of_leaf_operand(&mut self, operand: Operand) -> Result<MemoryLocation, String> {
         match operand {
-            Operand::Const(c) => Ok(MemoryLocation::Constant(self.constant(&[c]))),
-            Operand::Symbol(symbol) => self.input(symbol),
-            Operand::Tuple(k) => Ok(MemoryLocation::Constant(self.constant(&self.program.tuples[k]))),
+            Operand::Const(c) => Ok(MemoryLocation::Constant(self.find_or_add_constants(&[c]))),
+            Operand::Symbol(symbol) => self.input_location(symbol),
+            Operand::Tuple(k) => {
+                Ok(MemoryLocation::Constant(self.find_or_add_constants(&self.program.tuples[k])))
+            }
             // The inputs are adjacent.
             Operand::Gather(k) => {
                 let symbols = &self.program.gathers[k];
-                symbols.iter().rev().map(|symbol| self.input(*symbol)).last().ok_or("no input")?
+                symbols.iter().rev().map(|symbol| self.input_location(*symbol)).last().ok_or("no input")?
             }
             Operand::Value(k) => match self.sines.get(&k) {
                 Some(at) => Ok(MemoryLocation::Angle(*at)),
@@ -100,7 +102,7 @@ impl Planner<'_> {
     }
 
     /// Returns the index of constants in adjacent memory.
-    pub(super) fn constant(&mut self, lanes: &[f64]) -> usize {
+    pub(super) fn find_or_add_constants(&mut self, lanes: &[f64]) -> usize {
         let constants = &mut self.plan.constants;
         *self.known.entry(lanes.iter().map(|c| c.to_bits()).collect()).or_insert_with(|| {
             // Lanes do not cross lines of the cache.
@@ -110,7 +112,7 @@ impl Planner<'_> {
         })
     }
 
-    fn input(&mut self, symbol: Symbol) -> Result<MemoryLocation, String> {
+    fn input_location(&mut self, symbol: Symbol) -> Result<MemoryLocation, String> {
         let (slot, index) =
             self.layout.locate_symbol(symbol).ok_or("a program reads what it is not given")?;
         self.plan.lengths[slot] = self.plan.lengths[slot].max(index + 1);

@@ -38,7 +38,7 @@ const fn packed_encoding(opcode: u8) -> Encoding {
 }
 
 /// A fused product and sum.
-pub const fn fused(opcode: u8) -> Encoding {
+pub const fn fused_encoding(opcode: u8) -> Encoding {
     Encoding { opcode, map: 2, prefix: 1, wide: true, long: false }
 }
 
@@ -105,13 +105,13 @@ impl Assembler {
     pub fn load(&mut self, to: u8, from: Rm, width: usize) {
         match from {
             Rm::Register(register) if register == to => {}
-            Rm::Register(_) => self.instruction(encoding_on_lanes(MOVE, width), to, 0, from),
-            Rm::Memory(..) => self.instruction(encoding_on_lanes(LOAD, width), to, 0, from),
+            Rm::Register(_) => self.write_vex_instruction(encoding_on_lanes(MOVE, width), to, 0, from),
+            Rm::Memory(..) => self.write_vex_instruction(encoding_on_lanes(LOAD, width), to, 0, from),
         }
     }
 
     /// Writes an instruction with a prefix VEX: result, first and second operand.
-    pub fn instruction(&mut self, code: Encoding, register: u8, first: u8, second: Rm) {
+    pub fn write_vex_instruction(&mut self, code: Encoding, register: u8, first: u8, second: Rm) {
         let Encoding { opcode, map, prefix, wide, long } = code;
         self.long |= long;
         let base = match second {
@@ -157,7 +157,7 @@ impl Assembler {
     }
 
     /// Writes an instruction of one byte for a general register.
-    pub fn general(&mut self, opcode: u8, register: u8) {
+    pub fn write_general_register_instruction(&mut self, opcode: u8, register: u8) {
         if register >= 8 {
             self.bytes.push(0x41);
         }
@@ -175,7 +175,7 @@ impl Assembler {
         self.write_operand_address(to, Rm::Memory(base, offset));
     }
 
-    pub fn copy(&mut self, to: u8, from: u8) {
+    pub fn write_general_register_copy(&mut self, to: u8, from: u8) {
         self.write_wide_opcode(0x8B, to, from);
         self.write_operand_address(to, Rm::Register(from));
     }

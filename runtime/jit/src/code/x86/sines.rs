@@ -57,7 +57,7 @@ impl Writer<'_> {
     }
 
     /// Writes the computation of the sines and cosines of all groups of angles.
-    pub(super) fn sines(&mut self) -> Result<(), String> {
+    pub(super) fn write_sines(&mut self) -> Result<(), String> {
         let plan = self.plan;
         // The first group is computed first, and stays in its register.
         for (k, group) in plan.angles.iter().enumerate().rev() {
@@ -74,7 +74,7 @@ impl Writer<'_> {
             self.write_quadrant_change(k, group.width());
         }
         let widest = plan.angles.first().map_or(1, packed_width);
-        self.code.instruction(encoding_on_lanes(TEST, widest), LARGE, 0, Rm::Register(LARGE));
+        self.code.write_vex_instruction(encoding_on_lanes(TEST, widest), LARGE, 0, Rm::Register(LARGE));
         self.code.bytes.extend([0x0F, 0x85]); // jne
         let pointers = self.pointers.iter().map(|pointer| pointer.slot).collect();
         self.slow = Some(LargeAngleJump { distance: self.code.bytes.len(), pointers });
@@ -105,24 +105,24 @@ impl Writer<'_> {
             [(c, _)] => c,
             _ => return,
         };
-        self.code.instruction(INSERT_UPPER, ANGLE, ANGLE, upper);
+        self.code.write_vex_instruction(INSERT_UPPER, ANGLE, ANGLE, upper);
         self.code.bytes.push(1);
     }
 
     /// Writes the comparison of the angles' magnitudes with the largest one for which the reduction is exact.
     fn write_large_angle_comparison(&mut self, is_first: bool, width: usize) {
         let to = if is_first { LARGE } else { OTHER };
-        self.code.instruction(
+        self.code.write_vex_instruction(
             encoding_on_lanes(AND, width),
             OTHER,
             ANGLE,
             self.constant(self.masks + WIDEST),
         );
         let largest = self.operand_for_sine_constant(0);
-        self.code.instruction(encoding_on_lanes(COMPARE, width), to, OTHER, largest);
+        self.code.write_vex_instruction(encoding_on_lanes(COMPARE, width), to, OTHER, largest);
         self.code.bytes.push(GREATER);
         if !is_first {
-            self.code.instruction(encoding_on_lanes(OR, WIDEST), LARGE, LARGE, Rm::Register(OTHER));
+            self.code.write_vex_instruction(encoding_on_lanes(OR, WIDEST), LARGE, LARGE, Rm::Register(OTHER));
         }
     }
 
@@ -169,7 +169,7 @@ impl Writer<'_> {
         ];
         steps
             .into_iter()
-            .try_for_each(|(op, to, operands)| self.write_operation_code(op, to, operands, width))
+            .try_for_each(|(op, to, operands)| self.write_inline_operation(op, to, operands, width))
     }
 
     /// Writes the change of sine and cosine of the reduced angle into those of the angle, and their stores.
@@ -178,17 +178,22 @@ impl Writer<'_> {
         let packed = width.max(2);
         let (register, exchange, sign) = (Rm::Register, OTHER, EIGHTH);
         for (to, bits) in [(exchange, 63), (sign, 62)] {
-            self.code.instruction(encoding_on_lanes(SHIFT, packed), 6, to, register(SHIFTED));
+            self.code.write_vex_instruction(encoding_on_lanes(SHIFT, packed), 6, to, register(SHIFTED));
             self.code.bytes.push(bits);
         }
         for (to, even, odd) in [(LOW, SIN, COS), (SQUARE, COS, SIN)] {
-            self.code.instruction(encoding_on_lanes(BLEND, packed), to, even, register(odd));
+            self.code.write_vex_instruction(encoding_on_lanes(BLEND, packed), to, even, register(odd));
             self.code.bytes.push(exchange << 4);
         }
-        self.code.instruction(encoding_on_lanes(AND, packed), sign, sign, self.constant(self.masks));
-        self.code.instruction(encoding_on_lanes(XOR, packed), exchange, exchange, register(sign));
+        self.code.write_vex_instruction(
+            encoding_on_lanes(AND, packed),
+            sign,
+            sign,
+            self.constant(self.masks),
+        );
+        self.code.write_vex_instruction(encoding_on_lanes(XOR, packed), exchange, exchange, register(sign));
         for (result, sign, at) in [(LOW, sign, width), (SQUARE, exchange, 2 * width)] {
-            self.code.instruction(encoding_on_lanes(XOR, packed), result, result, register(sign));
+            self.code.write_vex_instruction(encoding_on_lanes(XOR, packed), result, result, register(sign));
             self.store(result, MemoryLocation::Angle(3 * WIDEST * group + at), width);
         }
     }
@@ -199,13 +204,13 @@ impl Writer<'_> {
         let back = distance + 4;
         self.write_jump_distance(distance, self.code.bytes.len())?;
         let saved = self.registers.registers_to_save_around_calls();
-        saved.iter().for_each(|register| self.code.general(0x50, *register));
+        saved.iter().for_each(|register| self.code.write_general_register_instruction(0x50, *register));
         if let Rm::Memory(base, at) = self.memory(MemoryLocation::Angle(0)) {
             self.code.write_effective_address_load(RDI, base, at);
         }
         self.code.write_move_immediate(RSI, self.plan.angle_count() as u64);
-        self.call("sines")?;
-        saved.iter().rev().for_each(|register| self.code.general(0x58, *register));
+        self.write_helper_call("sines")?;
+        saved.iter().rev().for_each(|register| self.code.write_general_register_instruction(0x58, *register));
         for slot in pointers {
             self.register_with_input_address(slot);
         }
