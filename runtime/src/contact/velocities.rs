@@ -1,6 +1,6 @@
 //! Contact velocities in one configuration.
 
-use super::problem::{entry_or_zero, set_entry};
+use super::problem::entry_or_zero;
 use super::selection::{ContactSelection, FEW};
 use super::{Contacts, Rows};
 use crate::Real;
@@ -94,15 +94,21 @@ impl<'a, M, T: Real, const NQ: usize, const NV: usize, const NR: usize>
     where
         M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
     {
-        let all = (NR <= FEW).then(|| {
-            let contact_velocities_of_change = |v| self.mechanism.contact_rates(self.t, self.q, v);
-            match self.contact_velocities_at_rest() {
-                Some(drift) => contact_velocities_of_change(change) - drift,
-                None => contact_velocities_of_change(change),
-            }
-        });
+        let all = (NR <= FEW).then(|| self.all_rate_changes(change));
         let change = self.rate_change_function_from_jacobian(change);
         move |k, row| all.as_ref().map_or_else(|| change(k, row), |all| entry_or_zero(all, row))
+    }
+
+    /// Returns the changes of all contact velocities for a change of the velocity.
+    fn all_rate_changes<const NU: usize, const NK: usize>(&self, change: &SVector<T, NV>) -> SVector<T, NR>
+    where
+        M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+    {
+        let changed = self.mechanism.contact_rates(self.t, self.q, change);
+        match self.contact_velocities_at_rest() {
+            Some(drift) => changed - drift,
+            None => changed,
+        }
     }
 
     /// Computes [`rate_change_function`](Self::rate_change_function) from the contact Jacobian, which the
@@ -151,13 +157,10 @@ impl<'a, M, T: Real, const NQ: usize, const NV: usize, const NR: usize>
     where
         M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
     {
-        let mut rates = SVector::zeros();
         if NR <= FEW {
-            let rate = self.rate_change_function(change);
-            (0..selection.row_count())
-                .for_each(|i| set_entry(&mut rates, i, rate(0, selection.mechanism_index_of_row(i))));
-            return rates;
+            return selection.selected_contact_rates(&self.all_rate_changes(change));
         }
+        let mut rates = SVector::zeros();
         let Some(jacobian) = self.contact_jacobian() else { return rates };
         let columns = self.mechanism.contact_columns();
         let jacobian_column_range = |k: usize| columns.get(selection.mechanism_index_of_contact(k)).copied();
