@@ -15,7 +15,7 @@ use linkwork_compiler::mechanics::passive::passive_forces;
 use linkwork_compiler::mechanics::{self, aba, crba, energy, forces, frames, ldl, momentum, rnea};
 use linkwork_compiler::mechanism::{Model, Quantity};
 use linkwork_compiler::passes::{
-    Passes, Variant, characteristic_link_sizes, model_variants, variants_in_common_axes,
+    ModelVariant, PassSelection, characteristic_link_sizes, model_variants, variants_in_common_axes,
 };
 use linkwork_compiler::syntax::RequestedFunctions;
 use linkwork_compiler::vectorise::{VectorisedMechanism, find_limb_groups};
@@ -31,11 +31,11 @@ use support::random::property_test_config;
 /// Tolerance between results with and without passes, relative to the largest entry.
 const TOLERANCE: f64 = 1e-10;
 
-const CHOICES: [Passes; 4] = [
-    Passes { frames: true, regroup: false, parallel: false, lanes: true, free_parameters: false },
-    Passes { frames: false, regroup: true, parallel: true, lanes: true, free_parameters: false },
-    Passes { frames: true, regroup: true, parallel: true, lanes: true, free_parameters: false },
-    Passes { frames: true, regroup: true, parallel: true, lanes: true, free_parameters: true },
+const CHOICES: [PassSelection; 4] = [
+    PassSelection { frames: true, regroup: false, parallel: false, lanes: true, free_parameters: false },
+    PassSelection { frames: false, regroup: true, parallel: true, lanes: true, free_parameters: false },
+    PassSelection { frames: true, regroup: true, parallel: true, lanes: true, free_parameters: false },
+    PassSelection { frames: true, regroup: true, parallel: true, lanes: true, free_parameters: true },
 ];
 
 fn assert_near(what: &str, seed: u64, tolerance: f64, new: &[f64], old: &[f64]) {
@@ -96,7 +96,7 @@ fn check_variants(model: &Model<'_>, seed: u64) {
         .into_iter()
         .map(|(name, e)| (name, eval(&e, &at)))
         .collect();
-    let check_functions_of_variant = |variant: &Variant<'_>, count: usize| {
+    let check_functions_of_variant = |variant: &ModelVariant<'_>, count: usize| {
         for ((name, new), (_, old)) in
             expressions_of_all_model_functions(&variant.model, &variant.joints).iter().zip(&old[..count])
         {
@@ -113,7 +113,7 @@ fn check_variants(model: &Model<'_>, seed: u64) {
     }
 }
 
-fn check_forward_dynamics(variant: &Variant<'_>, seed: u64) {
+fn check_forward_dynamics(variant: &ModelVariant<'_>, seed: u64) {
     let (model, joints) = (&variant.model, &variant.joints);
     let at = random_symbol_values(model, seed);
     let (v, a) = (mechanics::velocity_symbols(model), mechanics::acceleration_symbols(model));
@@ -171,8 +171,8 @@ fn check_passes_preserve_results(
     }
 }
 
-const OFF: Passes =
-    Passes { frames: false, regroup: false, parallel: false, lanes: false, free_parameters: false };
+const OFF: PassSelection =
+    PassSelection { frames: false, regroup: false, parallel: false, lanes: false, free_parameters: false };
 
 /// Checks that functions of prepared numbers have the results of the functions of parameters.
 fn check_prepared_functions(
@@ -408,7 +408,7 @@ proptest! {
         check_model_or_panic(&tree.tree_source(), |_, model| {
             let mut cx = Diagnostics::new();
             let prepare = RequestedFunctions { prepare: true, ..RequestedFunctions::default() };
-            let new = derive_with_options(model, prepare, Passes::default(), &mut cx);
+            let new = derive_with_options(model, prepare, PassSelection::default(), &mut cx);
             let old = derive_with_options(model, RequestedFunctions::default(), OFF, &mut cx);
             check_passes_preserve_results(
                 "tree", model, &new.expect("it moves"), &old.expect("it moves"), 1e-8,
@@ -434,7 +434,7 @@ fn parallel_joints_need_no_rotations() {
         let mut turning = Vec::new();
         check_model_or_panic(&(String::new(), arm_with_axes(axes)), |_, model| {
             let variant =
-                variants_in_common_axes(&model_variants(model, Passes::default())).into_iter().next();
+                variants_in_common_axes(&model_variants(model, PassSelection::default())).into_iter().next();
             let Some(variant) = variant else { return };
             turning = variant
                 .joints

@@ -11,7 +11,7 @@ use support::random::Random;
 const FORMULA: f64 = 1e-10;
 /// Tolerance between derivatives and central differences of eighth order.
 const DIFFERENCE: f64 = 1e-10;
-/// Step of these differences.
+/// Step of the central differences with which derivatives are compared.
 const STEP: f64 = 2e-3;
 
 /// Defines an aircraft with coefficients from tables or formulas. The braces declare the parameters of the

@@ -46,17 +46,17 @@ pub struct Block<'a> {
 /// Quantities of the links of a block, in the axes of the root: motion subspace of the joint about the root's
 /// origin (linear, then angular component), rotation matrix by rows, position of the link's origin, velocity
 /// and acceleration of the joint. Unused lanes are zero.
-pub type LinkRows<T> = Rows<T, 20>;
+pub type LinkQuantityLanes<T> = Rows<T, 20>;
 
 /// Mass properties of the bodies of a block, about the link's origin in its axes: mass, first moment, entries
 /// xx, yy, zz, yz, zx, xy of the inertia tensor. Unused lanes are zero.
-pub type InertiaRows<T> = Rows<T, 10>;
+pub type MassPropertyLanes<T> = Rows<T, 10>;
 
-/// Index of the rotation matrix in [`LinkRows`].
+/// Index of the rotation matrix in [`LinkQuantityLanes`].
 const ROTATION: usize = 6;
-/// Index of the position in [`LinkRows`].
+/// Index of the position in [`LinkQuantityLanes`].
 const POSITION: usize = 15;
-/// Index of the joint velocity in [`LinkRows`], followed by the joint acceleration.
+/// Index of the joint velocity in [`LinkQuantityLanes`], followed by the joint acceleration.
 const RATES: usize = 18;
 
 /// Writes the derivatives `∂τ/∂q` and `∂τ/∂v` of inverse dynamics, without those of passive forces, and sets
@@ -67,8 +67,8 @@ const RATES: usize = 18;
 #[inline]
 pub fn chain_derivatives<A: Arithmetic, T: Real, const N: usize, const B: usize, const FREE: bool>(
     blocks: &[Block<'_>; B],
-    links: &[LinkRows<T>; B],
-    inertias: &[InertiaRows<T>; B],
+    links: &[LinkQuantityLanes<T>; B],
+    inertias: &[MassPropertyLanes<T>; B],
     ground: &[T; 3],
     matrices: [&mut SMatrix<T, N, N>; 2],
     zeros: [&[(usize, usize)]; 2],
@@ -78,8 +78,8 @@ pub fn chain_derivatives<A: Arithmetic, T: Real, const N: usize, const B: usize,
 
 struct DerivativeLoop<'a, T, const N: usize, const B: usize, const FREE: bool> {
     blocks: &'a [Block<'a>; B],
-    links: &'a [LinkRows<T>; B],
-    inertias: &'a [InertiaRows<T>; B],
+    links: &'a [LinkQuantityLanes<T>; B],
+    inertias: &'a [MassPropertyLanes<T>; B],
     ground: &'a [T; 3],
     matrices: [&'a mut SMatrix<T, N, N>; 2],
     zeros: [&'a [(usize, usize)]; 2],

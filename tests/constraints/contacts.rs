@@ -1,4 +1,5 @@
-//! Contacts between surfaces that no mechanism of the gallery has.
+//! Rolling and sliding on cones, tori, bowls and parametric surfaces, compared with closed forms and with
+//! equivalent descriptions.
 
 use linkwork::integrate::DormandPrince;
 use linkwork::nalgebra::{UnitQuaternion, Vector3};

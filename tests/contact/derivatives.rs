@@ -393,18 +393,19 @@ fn steps_with_fixed_contact_modes_have_exact_jacobians() {
     ) {
         let u = SVector::<f64, 12>::from_fn(|k, _| 0.4 * (0.9 * k as f64).cos());
         let next = discrete::transition(m, method, 0.0, q, v, &u).unwrap();
-        let state_change_over_step = |q: &SVector<f64, 19>, v: &SVector<f64, 18>, u: &SVector<f64, 12>| {
-            let (q, v) = discrete::step(m, method, 0.0, q, v, u).unwrap();
-            let moved = QuadrupedOnPointFeet {}.difference(&next.q, &q);
-            SVector::<f64, 36>::from_fn(|k, _| if k < 18 { moved[k] } else { v[k - 18] })
-        };
+        let displacement_from_next_and_velocity =
+            |q: &SVector<f64, 19>, v: &SVector<f64, 18>, u: &SVector<f64, 12>| {
+                let (q, v) = discrete::step(m, method, 0.0, q, v, u).unwrap();
+                let moved = QuadrupedOnPointFeet {}.difference(&next.q, &q);
+                SVector::<f64, 36>::from_fn(|k, _| if k < 18 { moved[k] } else { v[k - 18] })
+            };
         let (a, b) = (next.a::<36>(), next.b::<36>());
         for k in 0..36 {
             let unit_direction_times = |s: f64, first: usize| {
                 SVector::<f64, 18>::from_fn(|i, _| if i + first == k { s } else { 0.0 })
             };
             let expected = derivative_at_zero(|s| {
-                state_change_over_step(
+                displacement_from_next_and_velocity(
                     &QuadrupedOnPointFeet {}.integrate(q, &unit_direction_times(s, 0)),
                     &(v + unit_direction_times(s, 18)),
                     &u,
@@ -415,7 +416,11 @@ fn steps_with_fixed_contact_modes_have_exact_jacobians() {
         }
         for k in 0..12 {
             let expected = derivative_at_zero(|s| {
-                state_change_over_step(q, v, &SVector::from_fn(|i, _| if i == k { u[i] + s } else { u[i] }))
+                displacement_from_next_and_velocity(
+                    q,
+                    v,
+                    &SVector::from_fn(|i, _| if i == k { u[i] + s } else { u[i] }),
+                )
             });
             let off = (b.column(k) - expected).amax();
             assert!(off < 1e-7 * (1.0 + expected.amax()), "{k}: {off:e}");

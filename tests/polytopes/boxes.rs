@@ -118,7 +118,7 @@ fn stacks_of_hulls_rest_like_boxes() {
     }
 }
 
-/// A block slides on the other one on a slope with `g (sin α − μ cos α)`, also beyond its edge.
+/// A block slides on a sloped block with acceleration `g (sin α − μ cos α)`, also beyond its edge.
 #[test]
 fn hulls_slide_like_boxes() {
     let q = configuration([0.0, 0.02, 0.125], UnitQuaternion::from_euler_angles(0.0, 0.0, 0.3));

@@ -8,7 +8,7 @@ use linkwork_compiler::diag::{Diagnostic, Diagnostics};
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::import;
 use linkwork_compiler::mechanism::Model;
-use linkwork_compiler::passes::Passes;
+use linkwork_compiler::passes::PassSelection;
 use linkwork_compiler::{
     DeclaredStruct, ParsedSource, compile, compile_with_passes, derive_above_attribute_error,
     mechanism_declarations, parse_source_and_import, reject_reproducible_arithmetic,
@@ -134,7 +134,7 @@ impl MechanismInput {
         let cx = &mut Diagnostics::new();
         let mut source = self.result_without_errors(self.parse_source(cx), cx)?;
         linkwork_jit::remove_rust_only_options(&mut source);
-        let passes = Passes { lanes: false, ..Passes::default() };
+        let passes = PassSelection { lanes: false, ..PassSelection::default() };
         let allowed = reject_reproducible_arithmetic(&source, "loaded mechanisms", cx);
         let compiled = allowed.and_then(|()| compile_with_passes(&source, graph, passes, cx));
         let (model, output) = self.result_without_errors(compiled, cx)?;

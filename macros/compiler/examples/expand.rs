@@ -16,7 +16,7 @@ use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::{Graph, Symbol};
 use linkwork_compiler::lower::{Op, OperationCounts, Program, pipeline};
 use linkwork_compiler::mechanism::Quantity;
-use linkwork_compiler::passes::Passes;
+use linkwork_compiler::passes::PassSelection;
 use linkwork_compiler::resolve::build_model;
 use linkwork_compiler::{compile, derive_with_options, expand, parse_source_and_import};
 use proc_macro2::TokenStream;
@@ -373,7 +373,7 @@ fn expand_once_with_timing(
     };
     let output = pipeline::run_with_pass_observer(Box::new(record_pass_time), || {
         let derive_all_functions =
-            || derive_with_options(&model, source.mechanism.requests, Passes::default(), cx);
+            || derive_with_options(&model, source.mechanism.requests, PassSelection::default(), cx);
         watch.measure_stage("derive", derive_all_functions)
     });
     result_or_errors(output, cx)?;

@@ -12,7 +12,7 @@ use crate::mechanics::routh::{self, RouthEquations};
 use crate::mechanics::speeds::SpeedTransformation;
 use crate::mechanics::{self, crba, frames};
 use crate::mechanism::Model;
-use crate::passes::Passes;
+use crate::passes::PassSelection;
 use crate::syntax::{EquationsOption, RequestedFunctions, SkippedPasses};
 use std::rc::Rc;
 
@@ -49,14 +49,14 @@ const MOST_PRODUCTS: usize = 100_000;
 /// Derives all functions except the optional ones. Returns `None` with the errors in `cx` if the equations
 /// cannot be derived, for example because the mass matrix is singular.
 pub fn derive<'g>(model: &Model<'g>, cx: &mut Diagnostics) -> Option<DerivationOutput> {
-    derive_with_options(model, RequestedFunctions::default(), Passes::default(), cx)
+    derive_with_options(model, RequestedFunctions::default(), PassSelection::default(), cx)
 }
 
 /// Like [`derive()`], with optional functions and a choice of optimisation passes.
 pub fn derive_with_options<'g>(
     model: &Model<'g>,
     requests: RequestedFunctions,
-    passes: Passes,
+    passes: PassSelection,
     cx: &mut Diagnostics,
 ) -> Option<DerivationOutput> {
     let passes = enabled_passes(passes, requests.skipped);
@@ -145,7 +145,7 @@ pub fn derive_with_options<'g>(
 fn derive_kinematic<'g>(
     (model, speeds): (&Model<'g>, Option<&Rc<SpeedTransformation<'g>>>),
     requests: RequestedFunctions,
-    passes: Passes,
+    passes: PassSelection,
     joints: &[Joint<'g>],
     cx: &mut Diagnostics,
 ) -> Option<DerivationOutput> {
@@ -267,8 +267,8 @@ fn validated_output(
 }
 
 /// Returns the passes that the user has not switched off.
-fn enabled_passes(passes: Passes, skipped: SkippedPasses) -> Passes {
-    Passes {
+fn enabled_passes(passes: PassSelection, skipped: SkippedPasses) -> PassSelection {
+    PassSelection {
         frames: passes.frames && !skipped.frames,
         regroup: passes.regroup && !skipped.regroup,
         parallel: passes.parallel && !skipped.parallel,
@@ -384,7 +384,7 @@ fn nonzero_mass_entries(mass: &crba::Matrix<'_>) -> Vec<(usize, usize)> {
 fn derive_and_lower_functions<'g>(
     (model, speeds): (&Model<'g>, Option<&Rc<SpeedTransformation<'g>>>),
     requests: RequestedFunctions,
-    passes: Passes,
+    passes: PassSelection,
     joints: &[Joint<'g>],
     extras: &OptionalFunctionData<'_, 'g>,
     specialisation: ParameterSpecialisation,
@@ -396,7 +396,7 @@ fn derive_and_lower_functions<'g>(
     let model = speeds.map_or(given.as_ref().unwrap_or(model), |speeds| &speeds.model);
     let facts = extras.facts_of_model(model, requests);
     let passes =
-        Passes { free_parameters: specialisation == ParameterSpecialisation::ByParameters, ..passes };
+        PassSelection { free_parameters: specialisation == ParameterSpecialisation::ByParameters, ..passes };
     let derivation = Derivation::new(model, joints, speeds, passes, specialisation, &facts);
     let functions =
         derivation.derive_declared_functions(catalogue::functions_derived_before_outputs(&facts), Vec::new());

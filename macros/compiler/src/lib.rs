@@ -106,7 +106,7 @@ pub fn export_c(
     let graph = Graph::new();
     // Reproducible programs without lanes compute the same bits as those with lanes.
     let reproducible = source.mechanism.requests.reproducible;
-    let passes = passes::Passes { lanes: reproducible, ..passes::Passes::default() };
+    let passes = passes::PassSelection { lanes: reproducible, ..passes::PassSelection::default() };
     let (model, output) = compile_with_passes(source, &graph, passes, cx)?;
     let tables = source.mechanism.shell.table_names();
     let options =
@@ -161,7 +161,7 @@ pub fn export_fmu(
 ) -> Option<export::fmu::FmuFiles> {
     reject_reproducible_arithmetic(source, "FMUs", cx)?;
     let graph = Graph::new();
-    let passes = passes::Passes { lanes: false, ..passes::Passes::default() };
+    let passes = passes::PassSelection { lanes: false, ..passes::PassSelection::default() };
     let (model, output) = compile_with_passes(source, &graph, passes, cx)?;
     if let Some((what, help)) = export::fmu::export_obstacle(&model, &output) {
         cx.report_error(model.place.clone(), what).add_help(help);
@@ -186,7 +186,7 @@ pub fn export_fmu_for_runtime_library(
 ) -> Option<(export::fmu::FmuFiles, Vec<String>)> {
     reject_reproducible_arithmetic(source, "FMUs", cx)?;
     let graph = Graph::new();
-    let passes = passes::Passes { lanes: false, ..passes::Passes::default() };
+    let passes = passes::PassSelection { lanes: false, ..passes::PassSelection::default() };
     let (model, output) = compile_with_passes(source, &graph, passes, cx)?;
     let tables = source.mechanism.shell.table_names();
     let missing_in_library_fmu_message =
@@ -214,7 +214,7 @@ fn compile_for_gpu_registers<'g>(
     cx: &mut Diagnostics,
 ) -> Option<(mechanism::Model<'g>, derive::DerivationOutput)> {
     reject_reproducible_arithmetic(source, "kernels", cx)?;
-    let passes = passes::Passes { lanes: false, ..passes::Passes::default() };
+    let passes = passes::PassSelection { lanes: false, ..passes::PassSelection::default() };
     let (model, mut output) = compile_with_passes(source, graph, passes, cx)?;
     reject_constraints_and_contacts(&model, &output, cx)?;
     for function in &mut output.functions {
@@ -331,14 +331,14 @@ pub fn compile<'g>(
     graph: &'g Graph,
     cx: &mut Diagnostics,
 ) -> Option<(mechanism::Model<'g>, derive::DerivationOutput)> {
-    compile_with_passes(source, graph, passes::Passes::default(), cx)
+    compile_with_passes(source, graph, passes::PassSelection::default(), cx)
 }
 
 /// Like [`compile`], with a choice of optimisation passes.
 pub fn compile_with_passes<'g>(
     source: &ParsedSource,
     graph: &'g Graph,
-    passes: passes::Passes,
+    passes: passes::PassSelection,
     cx: &mut Diagnostics,
 ) -> Option<(mechanism::Model<'g>, derive::DerivationOutput)> {
     if !cx.is_empty() {
@@ -365,7 +365,7 @@ pub fn compile_with_passes<'g>(
 fn compile_model_and_functions<'g>(
     source: &ParsedSource,
     graph: &'g Graph,
-    passes: passes::Passes,
+    passes: passes::PassSelection,
     cx: &mut Diagnostics,
 ) -> Option<(mechanism::Model<'g>, derive::DerivationOutput)> {
     let model = resolve::build_model(&source.mechanism.description, graph, cx)?;

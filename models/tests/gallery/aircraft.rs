@@ -34,8 +34,8 @@ fn aircraft_state(
     ([0.0, 0.0, 0.0, turn.i, turn.j, turn.k, turn.w].into(), [v.x, v.y, v.z, w.x, w.y, w.z].into())
 }
 
-/// Checks that the accelerations are zero in trimmed level flight, with angle of attack, thrust and elevator
-/// calculated by hand.
+/// Checks that the accelerations are zero in level flight at a given angle of attack, with speed, thrust and
+/// elevator calculated by hand, and that a small pitch-up causes a restoring moment.
 #[test]
 fn trimmed_level_flight_has_zero_acceleration() {
     let (alpha, weight) = (0.06_f64, A.mass * A.g);

@@ -1,7 +1,7 @@
 //! Data about a loaded mechanism that none of its functions needs.
 
 use crate::robot::Robot;
-use crate::shared::{Quantity, Shared};
+use crate::shared::{Quantity, SharedMechanism};
 use linkwork_compiler::ParsedSource;
 use linkwork_compiler::export::without_doc_links;
 use linkwork_compiler::mechanism::Model;
@@ -26,7 +26,7 @@ impl MechanismDocumentation {
     }
 }
 
-impl Shared {
+impl SharedMechanism {
     /// Returns the reason why a Runge–Kutta step needs more than the accelerations of the mechanism, such as
     /// constraints or contacts; `None` if it does not.
     pub fn step_obstacle(&self) -> Option<&'static str> {

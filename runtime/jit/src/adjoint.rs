@@ -6,7 +6,7 @@ use crate::error::Error;
 use crate::functions::ResultAssembly;
 use crate::robot::{Function, Robot};
 use crate::routine::{Routine, Values};
-use crate::shared::Shared;
+use crate::shared::SharedMechanism;
 use linkwork_compiler::catalogue::Argument;
 use linkwork_compiler::expr::{Extreme, Function as Elementary, Symbol, air};
 use linkwork_compiler::lower::{Op, Operand, Program};
@@ -21,7 +21,7 @@ const FACTORS: &str = "factors";
 /// arguments and parameters. They treat all entries of quaternions as independent, and are exact up to
 /// rounding errors.
 pub struct VectorJacobian {
-    shared: Arc<Shared>,
+    shared: Arc<SharedMechanism>,
     name: String,
     kind: VectorJacobianMethod,
     /// Number of entries of each argument of the function.

@@ -19,7 +19,7 @@ mod tests;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
-use crate::layout::Layout;
+use crate::layout::InputLayout;
 use crate::table::AnyTable;
 use linkwork::__private::{Arithmetic, Evaluate, dispatch_in_any_build};
 use linkwork_compiler::expr::Function as Elementary;
@@ -76,7 +76,7 @@ enum ExecutableMemory {
 
 impl Code {
     /// Compiles a program whose first `results` outputs are separate from the others.
-    pub fn compile(program: &Program, layout: &Layout, results: usize) -> Result<Code, String> {
+    pub fn compile(program: &Program, layout: &InputLayout, results: usize) -> Result<Code, String> {
         #[cfg(target_arch = "x86_64")]
         return Code::assemble_x86_code(program, layout, results);
         #[cfg(target_arch = "aarch64")]
@@ -85,7 +85,7 @@ impl Code {
 
     /// Compiles a program, or its variant with lanes, to instructions of this x86-64 processor.
     #[cfg(target_arch = "x86_64")]
-    fn assemble_x86_code(program: &Program, layout: &Layout, results: usize) -> Result<Code, String> {
+    fn assemble_x86_code(program: &Program, layout: &InputLayout, results: usize) -> Result<Code, String> {
         if !x86::is_supported() {
             return Err("the processor has neither AVX2 nor FMA".to_string());
         }
@@ -109,7 +109,11 @@ impl Code {
 
     /// Compiles a program to machine code with Cranelift.
     #[cfg(any(test, target_arch = "aarch64"))]
-    fn compile_with_cranelift(program: &Program, layout: &Layout, results: usize) -> Result<Code, String> {
+    fn compile_with_cranelift(
+        program: &Program,
+        layout: &InputLayout,
+        results: usize,
+    ) -> Result<Code, String> {
         let pieces = ProgramInPieces::split_program(program, layout)?;
         let plan = ProgramPlan::new(pieces, layout, results, cranelift::REGISTERS)?;
         let (module, address) = cranelift::translate(&plan, results, helper_address)?;
@@ -172,7 +176,7 @@ impl Code {
         results: &mut [f64],
         more: &mut [f64],
     ) -> bool {
-        let mut pointers = [const { MaybeUninit::<*const f64>::uninit() }; Layout::MOST];
+        let mut pointers = [const { MaybeUninit::<*const f64>::uninit() }; InputLayout::MOST];
         let [own, lengths @ ..] = &*self.lengths else { return false };
         if parameters.len() < *own
             || arguments.len() != lengths.len()

@@ -1,9 +1,9 @@
 //! Functions of the configuration space: motions along velocities, differences of configurations, rates of
 //! displacements.
 
-use crate::functions::{CallableFunctionBuilder, Entry, Matrix, ResultAssembly};
+use crate::functions::{CallableFunctionBuilder, LoadedFunction, Matrix, ResultAssembly};
 use crate::routine::Values;
-use crate::shared::Shared;
+use crate::shared::SharedMechanism;
 use linkwork::__private::{
     ball_carry, ball_carry_rate, ball_difference, ball_integrate, ball_tangent_rate, free_carry,
     free_carry_rate, free_difference, free_integrate, free_tangent_rate,
@@ -139,9 +139,9 @@ impl ConfigurationSpaceFunction {
             let plan =
                 ResultAssembly::ConfigurationSpaceFunction(ConfigurationSpaceFunction { kind, speeds });
             let calls = speeds.map_or(0, |all| all.map(|k| maker.entries[k].work).into_iter().sum());
-            let entry = Entry::new(name, documentation.to_string(), arguments, results, plan);
+            let entry = LoadedFunction::new(name, documentation.to_string(), arguments, results, plan);
             let work = 4 * nv + nq + calls;
-            maker.entries.push(Entry { work, ..entry });
+            maker.entries.push(LoadedFunction { work, ..entry });
         };
         let dv = velocity_argument("dv");
         add_function_entry(
@@ -185,7 +185,7 @@ impl ConfigurationSpaceFunction {
     /// Evaluates the function of the configuration space.
     pub fn evaluate(
         &self,
-        shared: &Shared,
+        shared: &SharedMechanism,
         values: Values<'_>,
         _: &[Argument],
         out: &mut [f64],

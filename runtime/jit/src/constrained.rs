@@ -3,7 +3,7 @@
 
 use crate::capacity::Visitor;
 use crate::error::Error;
-use crate::functions::{CallableFunctionBuilder, Entry, Matrix, ResultAssembly};
+use crate::functions::{CallableFunctionBuilder, LoadedFunction, Matrix, ResultAssembly};
 use crate::padded::Padded;
 use crate::robot::Robot;
 use linkwork::nalgebra::{SMatrix, SVector};
@@ -78,8 +78,8 @@ pub(crate) fn add(maker: &mut CallableFunctionBuilder<'_, '_>) {
         };
         let arguments = arguments.iter().copied().chain(further).collect();
         let plan = ResultAssembly::Constrained(kind);
-        let entry = Entry::new(name, documentation.to_string(), arguments, results, plan);
-        maker.entries.push(Entry { rank, ..entry });
+        let entry = LoadedFunction::new(name, documentation.to_string(), arguments, results, plan);
+        maker.entries.push(LoadedFunction { rank, ..entry });
     }
 }
 

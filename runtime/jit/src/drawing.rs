@@ -9,7 +9,7 @@ use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::{Graph, Lookup, Symbol};
 use linkwork_compiler::lower::{Program, lower};
 use linkwork_compiler::mechanism::{self, PieceShape, Quantity, SuppliedQuantity};
-use linkwork_compiler::passes::Passes;
+use linkwork_compiler::passes::PassSelection;
 use std::collections::HashSet;
 use std::sync::Mutex;
 
@@ -37,7 +37,7 @@ impl Loader {
         (requests.prepare, requests.batch, requests.packed) = (false, false, false);
         (requests.drawing, requests.derivatives) = (true, false);
         let (graph, cx) = (Graph::new(), &mut Diagnostics::new());
-        let passes = Passes { lanes: false, ..Passes::default() };
+        let passes = PassSelection { lanes: false, ..PassSelection::default() };
         let compiled = compile_with_passes(&source, &graph, passes, cx);
         let Some((model, _)) = compiled.filter(|_| cx.is_empty()) else {
             return Err(self.error_from_diagnostics(cx));

@@ -1,7 +1,7 @@
 //! Frames: programs of placements, velocities, accelerations and Jacobians, composed of the steps of
 //! the links between the ground and a frame.
 
-use crate::functions::{Entry, Matrix, ResultAssembly};
+use crate::functions::{LoadedFunction, Matrix, ResultAssembly};
 use crate::merge::ProgramMerger;
 use crate::routine::Routine;
 use linkwork_compiler::catalogue::{Argument, GeneratedId};
@@ -96,7 +96,7 @@ impl Frames {
     }
 
     /// Returns the functions of all frames: placement, velocity, acceleration and Jacobian of each frame.
-    pub fn frame_function_entries(&self, time: bool) -> Vec<Entry> {
+    pub fn frame_function_entries(&self, time: bool) -> Vec<LoadedFunction> {
         let functions_of_frame = |frame: usize| {
             FrameQuantity::ALL.into_iter().filter_map(move |access| {
                 use Argument::{A, Q, T, V};
@@ -125,7 +125,10 @@ impl Frames {
                 let rank =
                     if matches!(access, FrameQuantity::Placement | FrameQuantity::Jacobian) { 2 } else { 1 };
                 let name = format!("{}({name})", access.frame_function_name());
-                Some(Entry { rank, ..Entry::new(&name, documentation, arguments, results, plan) })
+                Some(LoadedFunction {
+                    rank,
+                    ..LoadedFunction::new(&name, documentation, arguments, results, plan)
+                })
             })
         };
         (0..self.names.len()).flat_map(functions_of_frame).collect()

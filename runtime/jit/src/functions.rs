@@ -8,7 +8,7 @@ use crate::kernels::{self, ColumnGroup};
 use crate::merge::ProgramMerger;
 use crate::polytopes::takes_features;
 use crate::routine::{Routine, Values};
-use crate::shared::Shared;
+use crate::shared::SharedMechanism;
 use linkwork_compiler::catalogue::{Argument, CalledFunction, GeneratedId, REACTION, Record, Shape};
 use linkwork_compiler::derive::{self, DerivationOutput};
 use linkwork_compiler::lower::{Operand, Program};
@@ -35,7 +35,7 @@ impl Matrix {
 }
 
 /// Function of a loaded mechanism: signature, documentation, and plan of its evaluation.
-pub(crate) struct Entry {
+pub(crate) struct LoadedFunction {
     pub name: String,
     pub documentation: String,
     /// Whether the function is hidden from callers and only called by other functions.
@@ -130,7 +130,7 @@ impl ResultAssembly {
     }
 }
 
-impl Entry {
+impl LoadedFunction {
     /// Selects the entries of each argument that belong to state `k` of a batch. An argument with the entries
     /// of one state is common to all states.
     pub fn select_state_arguments<'a>(&self, k: usize, arguments: &[&'a [f64]], to: &mut [&'a [f64]]) {
@@ -140,7 +140,7 @@ impl Entry {
     }
 
     /// Evaluates the function and writes its results to `out`. The lengths of all slices must be correct.
-    pub fn run(&self, shared: &Shared, values: Values<'_>, out: &mut [f64], work: &mut [f64]) {
+    pub fn run(&self, shared: &SharedMechanism, values: Values<'_>, out: &mut [f64], work: &mut [f64]) {
         match self.takes_features {
             true => shared.call_with_polytope_features(values, &self.arguments, |values| {
                 self.run_plan(shared, values, out, work);
@@ -149,7 +149,7 @@ impl Entry {
         }
     }
 
-    fn run_plan(&self, shared: &Shared, values: Values<'_>, out: &mut [f64], work: &mut [f64]) {
+    fn run_plan(&self, shared: &SharedMechanism, values: Values<'_>, out: &mut [f64], work: &mut [f64]) {
         match &self.plan {
             ResultAssembly::Program(routine) => routine.run(values, out, &mut []),
             ResultAssembly::Frame(access, frame, routine) => {
@@ -211,7 +211,7 @@ impl Entry {
 impl ForwardDerivativesByCalls {
     fn run_forward_dynamics_derivatives(
         &self,
-        shared: &Shared,
+        shared: &SharedMechanism,
         values: Values<'_>,
         arguments: &[Argument],
         out: &mut [f64],
@@ -280,7 +280,7 @@ fn assemble_linearized_system(
 pub(crate) struct CallableFunctionBuilder<'a, 'g> {
     pub model: &'a Model<'g>,
     pub output: &'a DerivationOutput,
-    pub entries: Vec<Entry>,
+    pub entries: Vec<LoadedFunction>,
 }
 
 impl CallableFunctionBuilder<'_, '_> {
@@ -319,7 +319,7 @@ impl CallableFunctionBuilder<'_, '_> {
     }
 
     /// Returns the callable function for a derived function; `None` for a function that callers cannot call.
-    fn callable_function_entry(&self, f: &derive::Function) -> Option<Entry> {
+    fn callable_function_entry(&self, f: &derive::Function) -> Option<LoadedFunction> {
         let hidden = is_internal(f.id);
         let has_dynamics = self.find_function(GeneratedId::ForwardDynamics).is_some();
         if f.id == GeneratedId::Reaction
@@ -422,8 +422,8 @@ impl CallableFunctionBuilder<'_, '_> {
         let results = result_matrix_shapes(f.shape, outputs);
         let documentation = f.docs.join("\n\n");
         let rank = rank_of_shape(f.shape);
-        let entry = Entry::new(name, documentation, arguments, results, plan);
-        Some(Entry { hidden, work, rank, takes_features, ..entry })
+        let entry = LoadedFunction::new(name, documentation, arguments, results, plan);
+        Some(LoadedFunction { hidden, work, rank, takes_features, ..entry })
     }
 
     /// Returns the columns of `∂τ/∂q` and `∂τ/∂v` that are multiplied by the inverse mass matrix.
@@ -478,7 +478,7 @@ impl CallableFunctionBuilder<'_, '_> {
 
     /// Returns the function of an output that contains joint reactions, for the motion that state and inputs
     /// determine.
-    fn reaction_output_entry(&self, f: &derive::Function) -> Option<Entry> {
+    fn reaction_output_entry(&self, f: &derive::Function) -> Option<LoadedFunction> {
         let name = f.name.strip_prefix(REACTION)?;
         let mut merged = ProgramMerger::default();
         let inputs = self.find_function(GeneratedId::GeneralizedForces).filter(|_| self.model.nu() > 0);
@@ -499,18 +499,18 @@ impl CallableFunctionBuilder<'_, '_> {
         let length = outputs.len();
         let routine = Routine::new(merged.finish(outputs), &arguments, length)?;
         let documentation = format!("Output `{name}` of the motion that state and inputs determine.");
-        let entry = Entry::new(
+        let entry = LoadedFunction::new(
             name,
             documentation,
             arguments,
             result_matrix_shapes(f.shape, length),
             ResultAssembly::Program(routine),
         );
-        Some(Entry { rank: rank_of_shape(f.shape), ..entry })
+        Some(LoadedFunction { rank: rank_of_shape(f.shape), ..entry })
     }
 }
 
-impl Entry {
+impl LoadedFunction {
     /// Returns a callable function without workspace, whose results are vectors.
     pub fn new(
         name: &str,
@@ -518,9 +518,9 @@ impl Entry {
         arguments: Vec<Argument>,
         results: Vec<Matrix>,
         plan: ResultAssembly,
-    ) -> Entry {
+    ) -> LoadedFunction {
         let length = results.iter().map(Matrix::length).sum();
-        Entry {
+        LoadedFunction {
             name: name.to_string(),
             documentation,
             hidden: false,

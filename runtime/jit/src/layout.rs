@@ -5,17 +5,17 @@ use linkwork_compiler::expr::Symbol;
 use linkwork_compiler::mechanism::Quantity;
 
 /// Order in which a program receives its inputs.
-pub(crate) struct Layout {
+pub(crate) struct InputLayout {
     arguments: Vec<Argument>,
 }
 
-impl Layout {
+impl InputLayout {
     /// Maximum number of inputs of a program, including the parameters.
     pub const MOST: usize = 12;
 
     /// Returns the layout of the parameters and these arguments; `None` if there are too many of them.
-    pub fn new(arguments: &[Argument]) -> Option<Layout> {
-        (arguments.len() < Layout::MOST).then(|| Layout { arguments: arguments.to_vec() })
+    pub fn new(arguments: &[Argument]) -> Option<InputLayout> {
+        (arguments.len() < InputLayout::MOST).then(|| InputLayout { arguments: arguments.to_vec() })
     }
 
     /// Returns the number of inputs, including the parameters.

@@ -10,12 +10,14 @@ use crate::internal::INTERNAL;
 use crate::methods::METHODS;
 use crate::polytopes::Polytopes;
 use crate::robot::Robot;
-use crate::shared::{Constraints, Contact, FirstOrderState, ParameterRequirement, Quantity, Shared, Sizes};
+use crate::shared::{
+    Constraints, Contact, FirstOrderState, ParameterRequirement, Quantity, SharedMechanism, Sizes,
+};
 use linkwork::__private::Rule;
 use linkwork_compiler::diag::{Diagnostic, Diagnostics};
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::mechanism::{self, Model};
-use linkwork_compiler::passes::Passes;
+use linkwork_compiler::passes::PassSelection;
 use linkwork_compiler::syntax::{EquationsOption, RATE_OF_STATE};
 use linkwork_compiler::{
     DeclaredStruct, ParsedSource, compile_with_passes, derive_above_attribute_error, import,
@@ -143,7 +145,7 @@ impl Loader {
         thread.join().map_err(|panic| Error::Internal(panic_message(&*panic)))?
     }
 
-    fn compile_mechanism(self) -> Result<Shared, Error> {
+    fn compile_mechanism(self) -> Result<SharedMechanism, Error> {
         let mut source = self.read_source()?;
         remove_rust_only_options(&mut source);
         let requests = &mut source.mechanism.requests;
@@ -152,7 +154,7 @@ impl Loader {
             requests.equations = EquationsOption::Structure;
         }
         let (graph, cx) = (Graph::new(), &mut Diagnostics::new());
-        let passes = Passes { lanes: cfg!(target_arch = "x86_64"), ..Passes::default() };
+        let passes = PassSelection { lanes: cfg!(target_arch = "x86_64"), ..PassSelection::default() };
         let allowed = reject_reproducible_arithmetic(&source, "loaded mechanisms", cx);
         let compiled = allowed.and_then(|()| compile_with_passes(&source, &graph, passes, cx));
         let Some((model, output)) = compiled.filter(|_| cx.is_empty()) else {
@@ -299,7 +301,7 @@ fn extract_shared_data(
     source: &ParsedSource,
     model: &Model<'_>,
     mut output: linkwork_compiler::derive::DerivationOutput,
-) -> Shared {
+) -> SharedMechanism {
     let frames = Frames::new(model, &mut output);
     let mut maker = CallableFunctionBuilder { model, output: &output, entries: Vec::new() };
     maker.add_derived_functions();
@@ -335,7 +337,7 @@ fn extract_shared_data(
         source.mechanism.shell.file_fields.iter().flat_map(|field| field.values.iter().copied()).collect();
     let first = defaults.len().saturating_sub(values.len());
     defaults[first..].copy_from_slice(&values);
-    Shared {
+    SharedMechanism {
         name: model.name.clone(),
         sizes,
         configuration: quantities_with_units(&mut model.configuration.iter(), &model.units.configuration),

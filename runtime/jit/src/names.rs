@@ -1,7 +1,7 @@
 //! Names in error messages. The runtime takes names as constants, so that loaded mechanisms pass numbers,
 //! which are later replaced by their names.
 
-use crate::shared::Shared;
+use crate::shared::SharedMechanism;
 
 /// List of names in a mechanism to which a name in a message belongs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,7 +47,7 @@ pub(crate) const fn placeholder_numbers<const N: usize>(list: NameListKind) -> [
     all
 }
 
-impl Shared {
+impl SharedMechanism {
     /// Returns the name that a placeholder number of [`placeholder_numbers`] represents.
     fn name_of_placeholder(&self, number: usize) -> Option<&str> {
         let k = number % COUNT;

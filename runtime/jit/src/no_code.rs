@@ -1,7 +1,7 @@
 //! Replacement of the code generator on unsupported processors, where programs are interpreted.
 
 use crate::AnyTable;
-use crate::layout::Layout;
+use crate::layout::InputLayout;
 use linkwork_compiler::lower::Program;
 
 /// Compiled program on unsupported processors: this type has no values.
@@ -9,7 +9,7 @@ pub(crate) enum Code {}
 
 impl Code {
     /// Returns an error, because no code generator exists for this processor.
-    pub fn compile(_program: &Program, _layout: &Layout, _results: usize) -> Result<Code, String> {
+    pub fn compile(_program: &Program, _layout: &InputLayout, _results: usize) -> Result<Code, String> {
         Err("there is no code generator for this processor".to_string())
     }
 

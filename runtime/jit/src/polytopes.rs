@@ -1,8 +1,8 @@
 //! Features of polytopes in contact, which programs take as inputs.
 
-use crate::layout::Layout;
+use crate::layout::InputLayout;
 use crate::routine::Values;
-use crate::shared::Shared;
+use crate::shared::SharedMechanism;
 use linkwork::__private as runtime;
 use linkwork_compiler::catalogue::{Argument, CalledFunction};
 use linkwork_compiler::lower::Program;
@@ -82,7 +82,7 @@ pub(crate) fn takes_features(program: &Program) -> bool {
         .any(|symbol| features.index_of_quantity(Quantity::from_symbol(symbol)).is_some())
 }
 
-impl Shared {
+impl SharedMechanism {
     /// Calls `f` with the inputs of a function, to which the features of polytopes are added.
     pub fn call_with_polytope_features(
         &self,
@@ -96,7 +96,7 @@ impl Shared {
             poses
         });
         let features = self.polytopes.features_in_poses(&poses.unwrap_or_default());
-        let mut inputs: [&[f64]; Layout::MOST] = [&[]; Layout::MOST];
+        let mut inputs: [&[f64]; InputLayout::MOST] = [&[]; InputLayout::MOST];
         let count = values.arguments.len();
         inputs[..count].copy_from_slice(values.arguments);
         inputs[count] = &features;

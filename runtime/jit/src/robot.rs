@@ -2,10 +2,10 @@
 
 use crate::AnyTable;
 use crate::error::Error;
-use crate::functions::{Entry, Matrix, ResultAssembly};
-use crate::layout::Layout;
+use crate::functions::{LoadedFunction, Matrix, ResultAssembly};
+use crate::layout::InputLayout;
 use crate::routine::Values;
-use crate::shared::{Quantity, Shared};
+use crate::shared::{Quantity, SharedMechanism};
 use linkwork::__private::{Figure, validate};
 use linkwork_compiler::catalogue::Argument;
 use std::cell::RefCell;
@@ -18,7 +18,7 @@ use std::sync::Arc;
 /// functions of one robot at the same time.
 #[derive(Clone)]
 pub struct Robot {
-    pub(crate) shared: Arc<Shared>,
+    pub(crate) shared: Arc<SharedMechanism>,
     parameters: Vec<f64>,
     tables: Vec<AnyTable>,
     /// Number of parameters and tables of the robot that have no value yet.
@@ -37,7 +37,7 @@ impl fmt::Debug for Robot {
 /// Function of a robot, looked up by its name once and then called without a search.
 #[derive(Clone)]
 pub struct Function {
-    shared: Arc<Shared>,
+    shared: Arc<SharedMechanism>,
     index: usize,
 }
 
@@ -48,7 +48,7 @@ impl fmt::Debug for Function {
 }
 
 impl Function {
-    pub(crate) fn shared_mechanism(&self) -> &Arc<Shared> {
+    pub(crate) fn shared_mechanism(&self) -> &Arc<SharedMechanism> {
         &self.shared
     }
 
@@ -137,7 +137,7 @@ thread_local! {
 }
 
 impl Robot {
-    pub(crate) fn new(shared: Arc<Shared>, interpreted: bool) -> Robot {
+    pub(crate) fn new(shared: Arc<SharedMechanism>, interpreted: bool) -> Robot {
         let parameters = shared.defaults.clone();
         let tables = vec![AnyTable::Missing; shared.tables.len()];
         let missing = parameters.iter().filter(|value| value.is_nan()).count() + tables.len();
@@ -431,7 +431,7 @@ impl Robot {
         if !fit || self.missing > 0 {
             return Err(self.call_error(entry, count, arguments, out.len()));
         }
-        let mut lists: [&[f64]; Layout::MOST] = [&[]; Layout::MOST];
+        let mut lists: [&[f64]; InputLayout::MOST] = [&[]; InputLayout::MOST];
         (0..count).try_for_each(|k| {
             entry.select_state_arguments(k, arguments, &mut lists);
             let out = &mut out[k * entry.length..(k + 1) * entry.length];
@@ -441,7 +441,7 @@ impl Robot {
 
     /// Returns the entry of a function of this mechanism.
     #[inline]
-    fn entry_of_function(&self, f: &Function) -> Result<&Entry, Error> {
+    fn entry_of_function(&self, f: &Function) -> Result<&LoadedFunction, Error> {
         match Arc::ptr_eq(&self.shared, &f.shared) {
             true => Ok(&self.shared.entries[f.index]),
             false => Err(Error::OtherMechanism(f.name().to_string())),
@@ -452,7 +452,7 @@ impl Robot {
     #[inline]
     fn call_entry(
         &self,
-        entry: &Entry,
+        entry: &LoadedFunction,
         parameters: &[f64],
         arguments: &[&[f64]],
         out: &mut [f64],
@@ -475,7 +475,7 @@ impl Robot {
     #[inline(never)]
     fn check_and_run_entry(
         &self,
-        entry: &Entry,
+        entry: &LoadedFunction,
         parameters: &[f64],
         arguments: &[&[f64]],
         out: &mut [f64],
@@ -493,7 +493,7 @@ impl Robot {
     /// Evaluates a function whose arguments and results have the right lengths.
     fn run_entry(
         &self,
-        entry: &Entry,
+        entry: &LoadedFunction,
         parameters: &[f64],
         arguments: &[&[f64]],
         out: &mut [f64],
@@ -514,7 +514,7 @@ impl Robot {
 
     /// Returns the error for a call with missing values, or with arguments or results of the wrong length.
     #[cold]
-    fn call_error(&self, entry: &Entry, count: usize, arguments: &[&[f64]], out: usize) -> Error {
+    fn call_error(&self, entry: &LoadedFunction, count: usize, arguments: &[&[f64]], out: usize) -> Error {
         let missing = self.check_no_values_missing().err();
         missing.unwrap_or_else(|| argument_length_error(entry, count, arguments, out))
     }
@@ -528,7 +528,7 @@ impl Robot {
     ) -> Result<(), Error> {
         let entry = &self.shared.entries[index];
         let time = [state.t.unwrap_or(self.time)];
-        let mut arguments: [&[f64]; Layout::MOST] = [&[]; Layout::MOST];
+        let mut arguments: [&[f64]; InputLayout::MOST] = [&[]; InputLayout::MOST];
         let mut others = state.other.iter().copied();
         for (list, argument) in arguments.iter_mut().zip(&entry.arguments) {
             *list = match argument {
@@ -583,7 +583,7 @@ impl Robot {
 
 /// Returns the error for a call whose arguments or results have the wrong length.
 #[cold]
-fn argument_length_error(entry: &Entry, count: usize, arguments: &[&[f64]], out: usize) -> Error {
+fn argument_length_error(entry: &LoadedFunction, count: usize, arguments: &[&[f64]], out: usize) -> Error {
     let of = entry.name.clone();
     if arguments.len() != entry.arguments.len() {
         let expected = entry.arguments.iter().map(|argument| argument.argument_name()).collect();

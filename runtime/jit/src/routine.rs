@@ -2,7 +2,7 @@
 
 use crate::AnyTable;
 use crate::code::Code;
-use crate::layout::Layout;
+use crate::layout::InputLayout;
 use linkwork_compiler::catalogue::Argument;
 use linkwork_compiler::expr::Lookup;
 use linkwork_compiler::lower::Program;
@@ -11,7 +11,7 @@ use std::sync::OnceLock;
 /// Program of a function with the layout of its inputs, and its machine code once compiled.
 pub(crate) struct Routine {
     program: OnceLock<Program>,
-    layout: Layout,
+    layout: InputLayout,
     /// Number of the program's outputs that are results of the function.
     results: usize,
     code: OnceLock<Option<Code>>,
@@ -40,7 +40,7 @@ impl Routine {
 
     /// Returns the routine of a program that is built at the first call.
     pub fn routine_built_on_demand(arguments: &[Argument], results: usize) -> Option<Routine> {
-        let layout = Layout::new(arguments)?;
+        let layout = InputLayout::new(arguments)?;
         Some(Routine { program: OnceLock::new(), layout, results, code: OnceLock::new() })
     }
 

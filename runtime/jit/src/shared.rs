@@ -2,8 +2,8 @@
 
 use crate::about::MechanismDocumentation;
 use crate::frames::Frames;
-use crate::functions::Entry;
-use crate::layout::Layout;
+use crate::functions::LoadedFunction;
+use crate::layout::InputLayout;
 use crate::polytopes::Polytopes;
 use crate::routine::Values;
 use linkwork_compiler::catalogue::Argument;
@@ -90,7 +90,7 @@ pub(crate) struct FirstOrderState {
 }
 
 /// Loaded mechanism: the data that all its robots share.
-pub(crate) struct Shared {
+pub(crate) struct SharedMechanism {
     pub name: String,
     pub sizes: Sizes,
     pub configuration: Vec<Quantity>,
@@ -120,7 +120,7 @@ pub(crate) struct Shared {
     pub states: Vec<FirstOrderState>,
     pub charts: Vec<Chart>,
     pub frames: Frames,
-    pub entries: Vec<Entry>,
+    pub entries: Vec<LoadedFunction>,
     pub index: HashMap<String, usize>,
     /// Indices of the functions that have methods of `Robot`; `None` for absent functions.
     pub methods: Vec<Option<usize>>,
@@ -129,7 +129,7 @@ pub(crate) struct Shared {
     pub about: MechanismDocumentation,
 }
 
-impl Shared {
+impl SharedMechanism {
     /// Returns the names of the public functions, except functions of frames.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         let public = self.entries.iter().filter(|entry| !entry.hidden && !entry.name.contains('('));
@@ -148,7 +148,7 @@ impl Shared {
         work: &mut [f64],
     ) {
         let entry = &self.entries[function];
-        let mut lists: [&[f64]; Layout::MOST] = [&[]; Layout::MOST];
+        let mut lists: [&[f64]; InputLayout::MOST] = [&[]; InputLayout::MOST];
         for (list, argument) in lists.iter_mut().zip(&entry.arguments) {
             let index_of_argument = || arguments.iter().position(|known| known == argument);
             *list = match replaced.iter().find(|(known, _)| known == argument) {

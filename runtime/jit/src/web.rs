@@ -3,8 +3,8 @@
 mod module;
 
 use crate::error::Error;
-use crate::functions::{Entry, ResultAssembly};
-use crate::layout::Layout;
+use crate::functions::{LoadedFunction, ResultAssembly};
+use crate::layout::InputLayout;
 use crate::robot::Robot;
 use crate::shared::Quantity;
 use crate::table::{AnyTable, TableData};
@@ -64,7 +64,7 @@ impl WebModule {
         program: &Program,
         arguments: &[Argument],
     ) -> Result<(), String> {
-        let layout = Layout::new(arguments).ok_or_else(|| format!("`{name}` has too many arguments"))?;
+        let layout = InputLayout::new(arguments).ok_or_else(|| format!("`{name}` has too many arguments"))?;
         self.module.add(name, program, &layout)?;
         let list = arguments.iter().map(|argument| {
             format!("[{},{}]", json_string(argument.argument_name()), robot.shared.sizes.length(*argument))
@@ -74,7 +74,7 @@ impl WebModule {
         Ok(())
     }
 
-    fn add_program_of_entry(&mut self, robot: &Robot, entry: &Entry) -> Result<(), String> {
+    fn add_program_of_entry(&mut self, robot: &Robot, entry: &LoadedFunction) -> Result<(), String> {
         match &entry.plan {
             ResultAssembly::Program(routine) => match routine.program() {
                 Some(program) => self.add(robot, &entry.name, program, &entry.arguments),

@@ -2,7 +2,7 @@
 
 use super::lanes::{Eight, Rows, WIDTH, read};
 use super::sums::{FIRST_ANGULAR, LINK_ROWS, MOMENTUM, RATE_ANGULAR, RATE_LINEAR, SECOND, WRENCHES, Work};
-use super::{Block, LinkRows};
+use super::{Block, LinkQuantityLanes};
 use crate::Real;
 use crate::arithmetic::Arithmetic;
 use nalgebra::SMatrix;
@@ -19,7 +19,7 @@ struct Factors<T> {
 impl<T: Real> Factors<T> {
     /// Reads the factors of the column of a lane.
     #[inline(always)]
-    fn read(rows: &Rows<T, LINK_ROWS>, link: &LinkRows<T>, lane: usize) -> Self {
+    fn read(rows: &Rows<T, LINK_ROWS>, link: &LinkQuantityLanes<T>, lane: usize) -> Self {
         let row_entry_in_lane = |k: usize| rows[k].0.get(lane).copied().unwrap_or(T::zero());
         let link_entry_in_lane = |k: usize| link[k].0.get(lane).copied().unwrap_or(T::zero());
         let mut factors = Factors { wrenches: [[T::zero(); 6]; 2], changes: [[T::zero(); 9]; 2] };
@@ -39,7 +39,7 @@ impl<T: Real> Factors<T> {
 
     /// Returns the entries of the column in the rows of ancestors, for both derivatives.
     #[inline(always)]
-    fn entries_of_ancestors<A: Arithmetic>(&self, ancestors: &LinkRows<T>) -> [Eight<A, T>; 2] {
+    fn entries_of_ancestors<A: Arithmetic>(&self, ancestors: &LinkQuantityLanes<T>) -> [Eight<A, T>; 2] {
         weighted_row_sums(ancestors, 0, &self.wrenches)
     }
 
@@ -73,7 +73,7 @@ fn weighted_row_sums<A: Arithmetic, T: Real, const K: usize, const M: usize>(
 pub fn write_columns_of_block<A: Arithmetic, T: Real, const N: usize, const B: usize>(
     (b, block): (usize, &Block<'_>),
     blocks: &[Block<'_>; B],
-    links: &[LinkRows<T>; B],
+    links: &[LinkQuantityLanes<T>; B],
     work: &Work<T, B>,
     by_q: &mut SMatrix<T, N, N>,
     by_v: &mut SMatrix<T, N, N>,

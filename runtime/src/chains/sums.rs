@@ -5,7 +5,7 @@ use super::lanes::{
     read_vectors, scale, scale_add, suffix_sums, symmetric, transform, transform_add, transpose, write,
     write_vectors,
 };
-use super::{Block, InertiaRows, LinkRows, POSITION, RATES, ROTATION};
+use super::{Block, LinkQuantityLanes, MassPropertyLanes, POSITION, RATES, ROTATION};
 use crate::Real;
 use crate::arithmetic::Arithmetic;
 
@@ -74,8 +74,8 @@ impl<T: Real, const B: usize> Work<T, B> {
         &mut self,
         b: usize,
         block: &Block<'_>,
-        link: &LinkRows<T>,
-        inertia: &InertiaRows<T>,
+        link: &LinkQuantityLanes<T>,
+        inertia: &MassPropertyLanes<T>,
         ground: &[T; 3],
         free: bool,
     ) {
@@ -115,7 +115,13 @@ impl<T: Real, const B: usize> Work<T, B> {
     /// Adds up the sums over the links of block `b` with their descendants, and computes the wrenches and
     /// momenta of its joints. `free` is true for a free root link.
     #[inline(always)]
-    pub fn sum_inward<A: Arithmetic>(&mut self, b: usize, block: &Block<'_>, link: &LinkRows<T>, free: bool) {
+    pub fn sum_inward<A: Arithmetic>(
+        &mut self,
+        b: usize,
+        block: &Block<'_>,
+        link: &LinkQuantityLanes<T>,
+        free: bool,
+    ) {
         let (Some(sums), Some(carried)) = (self.sums.get_mut(b), self.carried.get(b).copied()) else {
             return;
         };
@@ -200,8 +206,8 @@ fn read_six_rows<A: Arithmetic, T: Real, const K: usize>(rows: &Rows<T, K>, k: u
 /// `Inertia::sum_with_placed_inertia` of the compiler.
 #[inline(always)]
 fn inertia_about_root<A: Arithmetic, T: Real>(
-    link: &LinkRows<T>,
-    inertia: &InertiaRows<T>,
+    link: &LinkQuantityLanes<T>,
+    inertia: &MassPropertyLanes<T>,
 ) -> (Inertias<A, T>, [Eight<A, T>; 6]) {
     let rotation = [0, 3, 6].map(|k| read_vectors::<A, T, 20>(link, ROTATION + k));
     let p = read_vectors::<A, T, 20>(link, POSITION);

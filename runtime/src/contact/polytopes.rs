@@ -96,7 +96,7 @@ pub struct PolytopePair<'a> {
 }
 
 /// Polytope in the axes of the first polytope of its pair.
-struct Placed<'a, T> {
+struct PlacedPolytope<'a, T> {
     shape: &'a Polytope<'a>,
     rotation: Matrix3<T>,
     position: Vector3<T>,
@@ -132,10 +132,10 @@ impl PolytopePair<'_> {
     }
 }
 
-impl<'a, T: Real> Placed<'a, T> {
+impl<'a, T: Real> PlacedPolytope<'a, T> {
     fn new(shape: &'a Polytope<'a>, rotation: &Matrix3<T>, position: &Vector3<T>) -> Self {
         let zero = Vector3::zeros();
-        let mut placed = Placed {
+        let mut placed = PlacedPolytope {
             shape,
             rotation: *rotation,
             position: *position,
@@ -277,8 +277,8 @@ fn write_features<T: Real>(pair: &PolytopePair<'_>, pose: &[T], is_bounded: bool
     let pose_entry_or_zero = |k: usize| pose.get(k).copied().unwrap_or_else(T::zero);
     let rotation = Matrix3::from_fn(|i, j| pose_entry_or_zero(3 * j + i));
     let position = Vector3::from_fn(|i, _| pose_entry_or_zero(9 + i));
-    let first = Placed::new(&pair.first, &Matrix3::identity(), &Vector3::zeros());
-    let second = Placed::new(&pair.second, &rotation, &position);
+    let first = PlacedPolytope::new(&pair.first, &Matrix3::identity(), &Vector3::zeros());
+    let second = PlacedPolytope::new(&pair.second, &rotation, &position);
     if pair.has_cylinder() {
         return cylinders::write_features(&first, &second, pose_entry_or_zero(12), into);
     }
@@ -329,7 +329,7 @@ fn write_features_of_face_points<T: Real>(
 
 /// Returns the features that determine the contact.
 fn choose_features<T: Real>(
-    (first, second): (&Placed<'_, T>, &Placed<'_, T>),
+    (first, second): (&PlacedPolytope<'_, T>, &PlacedPolytope<'_, T>),
     face: &FaceAxis<T>,
     edge: Option<EdgeAxis<T>>,
     points: &[ClippedPoint<T>],
@@ -352,7 +352,7 @@ fn choose_features<T: Real>(
 /// Writes the features of the face and of the edges.
 fn write_face_and_edges<T: Real>(
     features: &DeterminingFeatures<T>,
-    (first, second): (&Placed<'_, T>, &Placed<'_, T>),
+    (first, second): (&PlacedPolytope<'_, T>, &PlacedPolytope<'_, T>),
     face: &FaceAxis<T>,
     into: &mut [T],
 ) {

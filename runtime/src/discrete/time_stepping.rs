@@ -316,7 +316,7 @@ impl<'a, M, const NV: usize> ConfigurationManifold<'a, M, NV> {
 struct DisplacedAxes<T, const NV: usize> {
     /// Displacement.
     dv: SVector<T, NV>,
-    /// Matrix that expresses velocities in these axes.
+    /// Matrix that expresses velocities in the axes after the displacement.
     axes: SMatrix<T, NV, NV>,
     /// Derivative of the motion of the axes with respect to the displacement.
     by_dv: SMatrix<T, NV, NV>,

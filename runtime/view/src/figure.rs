@@ -263,27 +263,27 @@ impl DrawnShape {
     /// extends beyond it.
     pub(crate) fn reference_points_of_shape(&self) -> Vec<(Option<usize>, Vector3<f64>, f64)> {
         let n = &self.numbers;
-        let vector_at_index = |k: usize| Vector3::new(n[k], n[k + 1], n[k + 2]);
+        let vector_from_entry = |k: usize| Vector3::new(n[k], n[k + 1], n[k + 2]);
         let [a, b] = self.frames;
         let spheres_at_ends = |half: f64, radius: f64| {
             vec![
-                (a, vector_at_index(0) - vector_at_index(3) * half, radius),
-                (a, vector_at_index(0) + vector_at_index(3) * half, radius),
+                (a, vector_from_entry(0) - vector_from_entry(3) * half, radius),
+                (a, vector_from_entry(0) + vector_from_entry(3) * half, radius),
             ]
         };
-        let norm_of_vector = |k: usize| vector_at_index(k).norm();
+        let norm_of_vector = |k: usize| vector_from_entry(k).norm();
         match self.kind {
             Kind::Rod => spheres_at_ends(n[6] / 2.0, 0.0),
             Kind::Cylinder | Kind::Capsule => spheres_at_ends(n[7] / 2.0, n[6]),
             Kind::Cone => spheres_at_ends(n[7] * 0.75, n[6]),
             Kind::Tube => spheres_at_ends(n[8] / 2.0, n[7]),
-            Kind::Ring | Kind::Disk => vec![(a, vector_at_index(0), n[6])],
-            Kind::Torus => vec![(a, vector_at_index(0), n[6] + n[7])],
-            Kind::Sphere => vec![(a, vector_at_index(0), n[3])],
-            Kind::Cuboid => vec![(a, vector_at_index(0), norm_of_vector(12) / 2.0)],
-            Kind::Ellipsoid => vec![(a, vector_at_index(0), n[12].max(n[13]).max(n[14]))],
+            Kind::Ring | Kind::Disk => vec![(a, vector_from_entry(0), n[6])],
+            Kind::Torus => vec![(a, vector_from_entry(0), n[6] + n[7])],
+            Kind::Sphere => vec![(a, vector_from_entry(0), n[3])],
+            Kind::Cuboid => vec![(a, vector_from_entry(0), norm_of_vector(12) / 2.0)],
+            Kind::Ellipsoid => vec![(a, vector_from_entry(0), n[12].max(n[13]).max(n[14]))],
             Kind::Bar | Kind::Coil | Kind::Damper => {
-                vec![(a, vector_at_index(0), 0.0), (b, vector_at_index(3), 0.0)]
+                vec![(a, vector_from_entry(0), 0.0), (b, vector_from_entry(3), 0.0)]
             }
             Kind::Terrain(_) => Vec::new(),
             // A surface has no definite size, like a plane.
@@ -292,7 +292,7 @@ impl DrawnShape {
                 Some(mesh) => {
                     vec![(
                         a,
-                        vector_at_index(0),
+                        vector_from_entry(0),
                         mesh.radius_of_mesh() * n[12].abs().max(n[13].abs()).max(n[14].abs()),
                     )]
                 }
@@ -308,7 +308,7 @@ impl DrawnShape {
             | Kind::Spiral
             | Kind::Brake
             | Kind::Force(_)
-            | Kind::Torque(_) => vec![(a, vector_at_index(0), 0.0)],
+            | Kind::Torque(_) => vec![(a, vector_from_entry(0), 0.0)],
         }
     }
 

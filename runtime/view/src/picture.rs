@@ -120,12 +120,12 @@ type FramePoint = (Option<usize>, Vector3<f64>);
 /// and its width. `size` is the size of the mechanism.
 fn shape_outline_points(shape: &DrawnShape, size: f64) -> (Vec<FramePoint>, f64) {
     let n = &shape.numbers;
-    let vector_at_index = |k: usize| Vector3::new(n[k], n[k + 1], n[k + 2]);
+    let vector_from_entry = |k: usize| Vector3::new(n[k], n[k + 1], n[k + 2]);
     let [a, b] = shape.frames;
     let attach_frame_to_points =
         |points: Vec<Vector3<f64>>| points.into_iter().map(|p| (a, p)).collect::<Vec<_>>();
     let points_of_round_solid = |half: f64, radius: f64| {
-        let (axis, at) = (vector_at_index(3), vector_at_index(0));
+        let (axis, at) = (vector_from_entry(3), vector_from_entry(0));
         attach_frame_to_points(
             [-half, half].iter().flat_map(|h| points_on_circle(at + axis * *h, axis, radius)).collect(),
         )
@@ -135,19 +135,21 @@ fn shape_outline_points(shape: &DrawnShape, size: f64) -> (Vec<FramePoint>, f64)
         attach_frame_to_points(
             corners
                 .iter()
-                .map(|c| vector_at_index(0) + axes * Vector3::from(*c).component_mul(&vector_at_index(12)))
+                .map(|c| {
+                    vector_from_entry(0) + axes * Vector3::from(*c).component_mul(&vector_from_entry(12))
+                })
                 .collect(),
         )
     };
     let points_of_ball = |radius: f64| {
         attach_frame_to_points(
-            points_on_sphere().iter().map(|c| vector_at_index(0) + Vector3::from(*c) * radius).collect(),
+            points_on_sphere().iter().map(|c| vector_from_entry(0) + Vector3::from(*c) * radius).collect(),
         )
     };
     let areas = match shape.kind {
-        Kind::Bar => return (vec![(a, vector_at_index(0)), (b, vector_at_index(3))], 0.018 * size),
+        Kind::Bar => return (vec![(a, vector_from_entry(0)), (b, vector_from_entry(3))], 0.018 * size),
         Kind::Coil | Kind::Damper => {
-            return (vec![(a, vector_at_index(0)), (b, vector_at_index(3))], 0.03 * size);
+            return (vec![(a, vector_from_entry(0)), (b, vector_from_entry(3))], 0.03 * size);
         }
         Kind::Rod => points_of_round_solid(n[6] / 2.0, (0.018 * n[6]).max(0.006 * size)),
         Kind::Ring | Kind::Disk => points_of_round_solid(0.04 * n[6], n[6]),
@@ -157,11 +159,11 @@ fn shape_outline_points(shape: &DrawnShape, size: f64) -> (Vec<FramePoint>, f64)
         Kind::Tube => points_of_round_solid(n[8] / 2.0, n[7]),
         Kind::Cone => {
             let mut points = attach_frame_to_points(points_on_circle(
-                vector_at_index(0) - vector_at_index(3) * (n[7] / 4.0),
-                vector_at_index(3),
+                vector_from_entry(0) - vector_from_entry(3) * (n[7] / 4.0),
+                vector_from_entry(3),
                 n[6],
             ));
-            points.push((a, vector_at_index(0) + vector_at_index(3) * (0.75 * n[7])));
+            points.push((a, vector_from_entry(0) + vector_from_entry(3) * (0.75 * n[7])));
             points
         }
         Kind::Sphere => points_of_ball(n[3]),

@@ -102,9 +102,9 @@ impl Figure {
     /// Returns the height of the lowest horizontal contact plane of the ground that faces upward.
     fn ground_height_along(&self, up: &Vector3<f64>) -> Option<f64> {
         let planes = self.shapes.iter().filter(|s| s.kind == Kind::Plane && s.frames[0].is_none());
-        let vector_at_index = |s: &DrawnShape, k: usize| Vector3::from_column_slice(&s.numbers[k..k + 3]);
-        let level = planes.filter(|s| vector_at_index(s, 3).dot(up) > 1.0 - 1e-9);
-        level.map(|s| vector_at_index(s, 0).dot(up)).reduce(f64::min)
+        let vector_from_entry = |s: &DrawnShape, k: usize| Vector3::from_column_slice(&s.numbers[k..k + 3]);
+        let level = planes.filter(|s| vector_from_entry(s, 3).dot(up) > 1.0 - 1e-9);
+        level.map(|s| vector_from_entry(s, 0).dot(up)).reduce(f64::min)
     }
 }
 

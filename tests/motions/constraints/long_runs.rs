@@ -199,7 +199,8 @@ fn four_bar_linkage_conserves_energy() {
     assert!(worst[1] < 1e-2, "{worst:?}");
 }
 
-/// Backward integration returns to the start, for loops, quaternions and rolling.
+/// The implicit midpoint rule is reversible: with the velocity reversed at the end, a motion returns to its
+/// start, with loops, quaternions and rolling.
 #[test]
 fn midpoint_rule_is_reversible() {
     fn check_reversibility<M, const NQ: usize, const NV: usize, const NU: usize>(

@@ -144,7 +144,7 @@ struct Crab {
 
 /// Returns the errors of `M⁻¹ Gᵀ` and `G M⁻¹ Gᵀ` against a general factorisation, relative to their largest
 /// entries.
-fn contact_response_errors<
+fn unit_impulse_response_errors<
     M,
     const NQ: usize,
     const NV: usize,
@@ -179,10 +179,10 @@ fn limb_contact_responses_agree_with_the_mass_matrix() {
     for _ in 0..20 {
         let m = Solo { slope: 0.1 };
         let q = m.integrate(&m.neutral(), &random.random_vector(1.0));
-        let errors = contact_response_errors(&m, &q);
+        let errors = unit_impulse_response_errors(&m, &q);
         assert!(errors[0].max(errors[1]) < 1e-12, "{errors:?}");
         let q = Crab {}.integrate(&Crab {}.neutral(), &random.random_vector(1.0));
-        let errors = contact_response_errors(&Crab {}, &q);
+        let errors = unit_impulse_response_errors(&Crab {}, &q);
         assert!(errors[0].max(errors[1]) < 1e-12, "{errors:?}");
     }
 }

@@ -63,7 +63,7 @@ fn write_frame_number_enum(text: &mut String, known: &LibraryData<'_, '_>, upper
         return;
     }
     let spoken: Vec<String> = known.model.frames.iter().map(|frame| frame.name.clone()).collect();
-    let names = linkwork_compiler::export::preprocessor_names(&spoken);
+    let names = linkwork_compiler::export::unique_constant_suffixes(&spoken);
     text.push_str("/* Frames by number. */\nenum {\n");
     for (k, (name, says)) in names.iter().zip(&spoken).enumerate() {
         let comma = if k + 1 < names.len() { "," } else { "" };

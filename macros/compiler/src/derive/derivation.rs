@@ -19,7 +19,7 @@ use crate::mechanics::routh::RouthEquations;
 use crate::mechanics::speeds::SpeedTransformation;
 use crate::mechanics::{energy, forces, power};
 use crate::mechanism::{Model, PassiveForces};
-use crate::passes::Passes;
+use crate::passes::PassSelection;
 use std::cell::OnceCell;
 use std::rc::Rc;
 
@@ -30,7 +30,7 @@ pub(super) struct Derivation<'a, 'g> {
     pub(super) model: &'a Model<'g>,
     pub(super) joints: &'a [Joint<'g>],
     speeds: Option<&'a Rc<SpeedTransformation<'g>>>,
-    passes: Passes,
+    passes: PassSelection,
     specialisation: ParameterSpecialisation,
     facts: &'a Facts,
     /// Data of the optional functions; `None` while only the functions without an option are derived.
@@ -46,7 +46,7 @@ impl<'a, 'g> Derivation<'a, 'g> {
         model: &'a Model<'g>,
         joints: &'a [Joint<'g>],
         speeds: Option<&'a Rc<SpeedTransformation<'g>>>,
-        passes: Passes,
+        passes: PassSelection,
         specialisation: ParameterSpecialisation,
         facts: &'a Facts,
     ) -> Derivation<'a, 'g> {

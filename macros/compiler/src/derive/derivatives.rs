@@ -19,17 +19,17 @@ use crate::mechanics::passive::passive_forces;
 use crate::mechanics::speeds::displacement_commutators;
 use crate::mechanics::{self, added_mass, constraints, crba, forces, momentum, rnea};
 use crate::mechanism::{Model, Quantity};
-use crate::passes::{self, Passes, Variant};
+use crate::passes::{self, ModelVariant, PassSelection};
 use crate::vectorise::{self, VectorisedMechanism};
 
 /// Maximum number of velocities for which symbolic differentiation is tried as a candidate.
 pub(super) const DIFFERENTIATE: usize = 6;
 
 /// Returns the variants of the model among which the cheapest is chosen.
-pub(super) fn model_variants<'g>(model: &Model<'g>, passes: Passes) -> Vec<Variant<'g>> {
+pub(super) fn model_variants<'g>(model: &Model<'g>, passes: PassSelection) -> Vec<ModelVariant<'g>> {
     let mut variants = passes::model_variants(model, passes);
     if passes.frames && model.nv() <= DERIVATIVES_COMPARED {
-        variants.extend(passes::model_variants(model, Passes { frames: false, ..passes }));
+        variants.extend(passes::model_variants(model, PassSelection { frames: false, ..passes }));
     }
     variants.retain(|variant| !variant.for_inverse_dynamics);
     if model.nv() > DERIVATIVES_COMPARED {
@@ -54,8 +54,8 @@ pub(super) struct DerivativeFunctions<'a, 'g> {
 impl<'a, 'g> DerivativeFunctions<'a, 'g> {
     pub(super) fn new(
         model: &Model<'g>,
-        variants: &'a [Variant<'g>],
-        passes: Passes,
+        variants: &'a [ModelVariant<'g>],
+        passes: PassSelection,
         specialisation: ParameterSpecialisation,
     ) -> Option<DerivativeFunctions<'a, 'g>> {
         let mut parts: Vec<DerivativeVariant<'_, '_>> =
@@ -213,7 +213,10 @@ struct MechanismInLanes<'g> {
 }
 
 impl<'a, 'g> DerivativeVariant<'a, 'g> {
-    fn new(variant: &'a Variant<'g>, specialisation: ParameterSpecialisation) -> DerivativeVariant<'a, 'g> {
+    fn new(
+        variant: &'a ModelVariant<'g>,
+        specialisation: ParameterSpecialisation,
+    ) -> DerivativeVariant<'a, 'g> {
         let mass = crba::mass_matrix(&variant.model, &variant.joints);
         DerivativeVariant {
             model: &variant.model,

@@ -12,14 +12,14 @@ use crate::mechanics::limb_contacts::LimbContacts;
 use crate::mechanics::speeds::{ResultKind, SpeedTransformation};
 use crate::mechanics::{self, crba, energy, frames, limb_responses, momentum};
 use crate::mechanism::Model;
-use crate::passes::Passes;
+use crate::passes::PassSelection;
 use std::rc::Rc;
 
 mod frame_choice;
 mod variants;
 
 use frame_choice::{FrameChoice, smallest_candidate_size};
-use variants::Variants;
+use variants::ModelVariants;
 
 /// Inverse tolerance of the comparison of frames: frames whose mass matrix and inverse dynamics exceed the
 /// minimum size by more than one part in this number are excluded.
@@ -28,7 +28,7 @@ const SIMILAR: usize = 8;
 /// The variants of a model from which the functions of dynamics are derived.
 pub(super) struct DynamicsDerivation<'g> {
     /// Variants of the model for each frame choice that may be the cheapest, the best first.
-    choices: Vec<Variants<'g>>,
+    choices: Vec<ModelVariants<'g>>,
     /// True if the results are in declared generalized speeds.
     in_speeds: bool,
     /// True if forward dynamics uses one algorithm without comparing alternatives.
@@ -45,7 +45,7 @@ impl<'g> DynamicsDerivation<'g> {
     /// transformed to generalized speeds.
     pub(super) fn new(
         model: &Model<'g>,
-        passes: Passes,
+        passes: PassSelection,
         specialisation: ParameterSpecialisation,
         speeds: Option<&Rc<SpeedTransformation<'g>>>,
     ) -> DynamicsDerivation<'g> {
@@ -64,7 +64,7 @@ impl<'g> DynamicsDerivation<'g> {
                 choices.push(choice.variants);
             }
         }
-        choices.iter_mut().for_each(Variants::store_cheapest_bias_program);
+        choices.iter_mut().for_each(ModelVariants::store_cheapest_bias_program);
         let wide = if speeds.is_none() { passes.tried_lane_counts(model.nv()) } else { &[] };
         let wide = lane_mass_matrix_programs(&choices, specialisation, wide);
         let side_by_side = cheapest_lane_programs(
@@ -148,15 +148,15 @@ impl<'g> DynamicsDerivation<'g> {
     }
 
     pub(super) fn constrained_dynamics(&self) -> Program {
-        self.best_variant_program(Variants::constrained_dynamics)
+        self.best_variant_program(ModelVariants::constrained_dynamics)
     }
 
     pub(super) fn constraint_response(&self) -> Program {
-        self.best_variant_program(Variants::constraint_response)
+        self.best_variant_program(ModelVariants::constraint_response)
     }
 
     pub(super) fn slipping_response(&self) -> Program {
-        self.best_variant_program(Variants::slipping_response)
+        self.best_variant_program(ModelVariants::slipping_response)
     }
 
     /// Returns the changes of the velocities, and of the contact velocities with these rows, due to unit
@@ -191,7 +191,7 @@ impl<'g> DynamicsDerivation<'g> {
         plain.with_cheapest_lane_variant(found.map(|outputs| self.specialisation.lower_to_program(&outputs)))
     }
 
-    fn best_variant_program(&self, program: impl FnOnce(&Variants<'g>) -> Program) -> Program {
+    fn best_variant_program(&self, program: impl FnOnce(&ModelVariants<'g>) -> Program) -> Program {
         self.choices.first().map(program).unwrap_or_default()
     }
 
@@ -213,11 +213,13 @@ impl<'g> DynamicsDerivation<'g> {
     /// dependency chains of articulated bodies are longer.
     pub(super) fn forward_dynamics(&self) -> Program {
         let articulated: Vec<Candidate<'g>> =
-            self.choices.iter().flat_map(Variants::articulated_forward_dynamics_candidates).collect();
+            self.choices.iter().flat_map(ModelVariants::articulated_forward_dynamics_candidates).collect();
         let is_large = self.is_large;
         let factorised: Vec<Candidate<'g>> = match is_large && !articulated.is_empty() {
             true => Vec::new(),
-            false => self.choices.iter().flat_map(Variants::factorised_forward_dynamics_candidates).collect(),
+            false => {
+                self.choices.iter().flat_map(ModelVariants::factorised_forward_dynamics_candidates).collect()
+            }
         };
         let is_larger = smallest_candidate_size(&factorised)
             .is_none_or(|f| smallest_candidate_size(&articulated).is_some_and(|a| f > a));
@@ -232,7 +234,7 @@ impl<'g> DynamicsDerivation<'g> {
             .min_by_key(Program::estimated_program_time);
         let in_lanes = cheapest_lane_programs(
             self.specialisation,
-            self.choices.iter().flat_map(Variants::articulated_dynamics_in_lanes),
+            self.choices.iter().flat_map(ModelVariants::articulated_dynamics_in_lanes),
         );
         found.unwrap_or_default().with_cheapest_lane_variant(in_lanes)
     }
@@ -240,12 +242,12 @@ impl<'g> DynamicsDerivation<'g> {
 
 /// Returns programs of the mass matrix in which identical limbs, or columns, are SIMD lanes.
 fn lane_mass_matrix_programs<'g>(
-    choices: &[Variants<'g>],
+    choices: &[ModelVariants<'g>],
     specialisation: ParameterSpecialisation,
     wide: &[usize],
 ) -> Vec<Program> {
     let limb_lane_mass_programs = |most| {
-        let limb_lane_mass_matrices = move |variants: &Variants<'g>| {
+        let limb_lane_mass_matrices = move |variants: &ModelVariants<'g>| {
             variants
                 .vectorised_mechanisms_for_all_functions()
                 .map(|limbs| limb_lanes::mass_matrix(limbs, most))
@@ -254,7 +256,7 @@ fn lane_mass_matrix_programs<'g>(
         cheapest_lane_programs(specialisation, choices.iter().flat_map(limb_lane_mass_matrices))
     };
     let column_lane_mass_programs = |most| {
-        let column_lane_mass_matrices = move |variants: &Variants<'g>| {
+        let column_lane_mass_matrices = move |variants: &ModelVariants<'g>| {
             let all = variants.variants_for_all_functions();
             all.map(|m| crba::mass_matrix_in_lanes(m, &variants.joints, most).concat()).collect::<Vec<_>>()
         };

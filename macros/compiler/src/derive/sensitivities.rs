@@ -7,11 +7,11 @@ use crate::lower::Program;
 use crate::machine::DERIVATIVES_COMPARED;
 use crate::mechanics::{self, derivatives::parameters};
 use crate::mechanism::Model;
-use crate::passes::{self, Passes, Variant};
+use crate::passes::{self, ModelVariant, PassSelection};
 
 /// The model, or the cheapest of its variants, from which both functions are derived.
 pub(super) struct SensitivityDerivation<'g> {
-    variant: Option<Variant<'g>>,
+    variant: Option<ModelVariant<'g>>,
     inverse: Program,
     specialisation: ParameterSpecialisation,
 }
@@ -19,7 +19,7 @@ pub(super) struct SensitivityDerivation<'g> {
 impl<'g> SensitivityDerivation<'g> {
     pub(super) fn new(
         model: &Model<'g>,
-        passes: Passes,
+        passes: PassSelection,
         specialisation: ParameterSpecialisation,
     ) -> SensitivityDerivation<'g> {
         // Passive forces as symbols hide their dependence on the parameters, so the elements themselves are
@@ -31,7 +31,7 @@ impl<'g> SensitivityDerivation<'g> {
             Vec::new()
         };
         variants.retain(|variant| !variant.for_inverse_dynamics);
-        variants.push(Variant {
+        variants.push(ModelVariant {
             joints: kinematics::joints_of_model(model),
             model: model.clone(),
             for_inverse_dynamics: false,
@@ -39,7 +39,7 @@ impl<'g> SensitivityDerivation<'g> {
         if passes.parallel {
             variants.extend(passes::variants_in_common_axes(&variants));
         }
-        let parameter_derivatives_program = |variant: &Variant<'_>| {
+        let parameter_derivatives_program = |variant: &ModelVariant<'_>| {
             specialisation
                 .lower_to_program(&parameters::inverse_dynamics(&variant.model, &variant.joints).concat())
         };
@@ -62,7 +62,7 @@ impl<'g> SensitivityDerivation<'g> {
     }
 }
 
-fn acceleration_sensitivities<'g>(variant: &Variant<'g>) -> Vec<Vec<Expr<'g>>> {
+fn acceleration_sensitivities<'g>(variant: &ModelVariant<'g>) -> Vec<Vec<Expr<'g>>> {
     let model = &variant.model;
     parameters::forward_dynamics(model, &variant.joints, &mechanics::generalized_force_symbols(model))
 }

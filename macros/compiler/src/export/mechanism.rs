@@ -252,7 +252,7 @@ impl<'a> ExportedMechanism<'a> {
     /// Returns the names of the frames, as parts of constants and as in the mechanism.
     pub fn frame_names(&self) -> Vec<(String, String)> {
         let names: Vec<String> = self.model.frames.iter().map(|frame| frame.name.clone()).collect();
-        names::preprocessor_names(&names).into_iter().zip(names).collect()
+        names::unique_constant_suffixes(&names).into_iter().zip(names).collect()
     }
 
     /// Returns the names of the arguments of the function for the forces of inputs, except time.

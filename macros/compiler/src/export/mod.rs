@@ -17,4 +17,4 @@ pub mod wgsl;
 
 pub use comments::{comment_safe_text, without_doc_links, wrap_paragraph};
 pub use mechanism::{ExportObstacle, Options};
-pub use names::{c_name_prefix, identifier_from_name, preprocessor_names, to_snake_case};
+pub use names::{c_name_prefix, identifier_from_name, to_snake_case, unique_constant_suffixes};

@@ -80,8 +80,9 @@ pub fn unique_identifiers<S: AsRef<str>>(names: &[S]) -> Vec<String> {
     make_names_unique(names.iter().map(|name| identifier_from_name(name.as_ref())))
 }
 
-/// Returns unique preprocessor names for several names with a common prefix.
-pub fn preprocessor_names<S: AsRef<str>>(names: &[S]) -> Vec<String> {
+/// Returns names in capitals, unique among each other, as ends of C constants. The caller writes a common
+/// prefix before them.
+pub fn unique_constant_suffixes<S: AsRef<str>>(names: &[S]) -> Vec<String> {
     make_names_unique(names.iter().map(|name| replace_invalid_characters(name.as_ref()).to_ascii_uppercase()))
 }
 
@@ -129,7 +130,7 @@ mod tests {
             ["mass", "type", "int_", "class_", "x2nd", "x_x", "u00b5", "NAN_", "M_PI_", "L", "left_arm"]
         );
         assert_eq!(unique_identifiers(&["a-b", "a_b", "a b"]), ["a_b", "a_b_2", "a_b_3"]);
-        assert_eq!(preprocessor_names(&["tool", "r#in", "left-arm"]), ["TOOL", "IN", "LEFT_ARM"]);
+        assert_eq!(unique_constant_suffixes(&["tool", "r#in", "left-arm"]), ["TOOL", "IN", "LEFT_ARM"]);
         assert_eq!(
             ["CartPole", "UR5", "Solo12", "HTTPServer"].map(to_snake_case),
             ["cart_pole", "ur5", "solo12", "http_server"]

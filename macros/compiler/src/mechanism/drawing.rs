@@ -15,7 +15,7 @@ pub struct Piece<'g> {
     pub kind: PieceShape,
     /// Indices of the frames in which its first and its second vector are fixed; `None` for the ground.
     pub frames: [Option<usize>; 2],
-    /// Geometric values in the axes of these frames: expressions of the parameters only.
+    /// Geometric values in the axes of `frames`: expressions of the parameters only.
     pub numbers: Vec<Expr<'g>>,
 }
 

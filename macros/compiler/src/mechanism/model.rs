@@ -91,8 +91,8 @@ pub struct Model<'g> {
     pub loads: Vec<Load<'g>>,
     /// Terms of other forces that are linear in the accelerations.
     pub acceleration_forces: Vec<AccelerationForce<'g>>,
-    /// Passive forces of all these elements, if a separate function computes them and the other functions
-    /// call it.
+    /// Passive forces of springs, dashpots, friction, potentials and loads, if a separate function computes
+    /// them and the other functions call it.
     pub passive: Option<Rc<PassiveForces<'g>>>,
     /// Inertances of inerters.
     pub inertances: Vec<Inertance<'g>>,

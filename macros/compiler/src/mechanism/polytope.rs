@@ -1,4 +1,5 @@
-//! Convex polytopes in contact, as data of the model.
+//! Convex polytopes in contact, as data of the model. A feature is a number that the runtime computes for a
+//! pair, from which generated code computes gaps and contact velocities.
 
 use crate::expr::Expr;
 
@@ -12,7 +13,8 @@ pub const POINT_FEATURES: usize = 13;
 pub const CYLINDER_PAIR_FEATURES: usize = 6;
 /// Numbers of contact points of a pair with a cylinder on curves, and fixed in the body opposite to a face.
 pub const CYLINDER_POINTS: [usize; 2] = [3, 5];
-/// Numbers of features of these points.
+/// Numbers of features of one contact point of a pair with a cylinder: on curves, and fixed in the body
+/// opposite to a face.
 pub const CYLINDER_POINT_FEATURES: [usize; 2] = [23, 4];
 
 /// Face of a polytope.

@@ -19,7 +19,8 @@ const OFFSET: f64 = 3.0;
 const MOMENT: f64 = 20.0;
 /// Cost of a nonzero off-diagonal entry (product of inertia) of an inertia tensor.
 pub const PRODUCT: f64 = 12.0;
-/// Fraction of these costs for a joint on the ground, where forces are not needed.
+/// Factor of the costs of offsets, moments and products of inertia for a joint on the ground, where forces
+/// are not needed.
 const GROUND: f64 = 0.02;
 
 /// Returns the cheapest placement of a link's new frame `frame` in its parent's frame `parent`: cost,

@@ -20,7 +20,7 @@ pub use regroup::{RegroupOptions, move_inertias_to_parents};
 
 /// Selection of the passes over the model that run.
 #[derive(Clone, Copy, Debug)]
-pub struct Passes {
+pub struct PassSelection {
     /// Whether the pass runs that chooses link frames with sparse placements.
     pub frames: bool,
     /// Whether the pass runs that moves mass properties towards the base.
@@ -33,13 +33,13 @@ pub struct Passes {
     pub lanes: bool,
 }
 
-impl Default for Passes {
-    fn default() -> Passes {
-        Passes { frames: true, regroup: true, free_parameters: false, parallel: true, lanes: true }
+impl Default for PassSelection {
+    fn default() -> PassSelection {
+        PassSelection { frames: true, regroup: true, free_parameters: false, parallel: true, lanes: true }
     }
 }
 
-impl Passes {
+impl PassSelection {
     /// Returns the numbers of SIMD lanes that are tried for joints of one path. Code without lanes is tried
     /// in
     /// every case.
@@ -55,7 +55,7 @@ impl Passes {
 
 /// Model that is equivalent to the original one, in other frames or with other mass properties.
 #[derive(Clone)]
-pub struct Variant<'g> {
+pub struct ModelVariant<'g> {
     /// Model with mass properties resolved in the axes of its joints.
     pub model: Model<'g>,
     /// Joints of the variant's model.
@@ -65,7 +65,7 @@ pub struct Variant<'g> {
 }
 
 /// Runs the passes; returns variants with the same frames and different distributions of mass properties.
-pub fn model_variants<'g>(model: &Model<'g>, passes: Passes) -> Vec<Variant<'g>> {
+pub fn model_variants<'g>(model: &Model<'g>, passes: PassSelection) -> Vec<ModelVariant<'g>> {
     let mut start = model.clone();
     if passes.regroup {
         // Frames are chosen by the mass properties that remain.
@@ -77,9 +77,9 @@ pub fn model_variants<'g>(model: &Model<'g>, passes: Passes) -> Vec<Variant<'g>>
     }
     let joints = joints_of_model(&start);
     if !passes.regroup {
-        return vec![Variant { model: start, joints, for_inverse_dynamics: false }];
+        return vec![ModelVariant { model: start, joints, for_inverse_dynamics: false }];
     }
-    let mut variants: Vec<Variant<'g>> = Vec::new();
+    let mut variants: Vec<ModelVariant<'g>> = Vec::new();
     let small = model.nv() <= EXHAUSTIVE_VELOCITIES;
     for (gauge, to_children, symbolic, always) in DISTRIBUTIONS {
         if !(small || always) {
@@ -89,13 +89,13 @@ pub fn model_variants<'g>(model: &Model<'g>, passes: Passes) -> Vec<Variant<'g>>
         move_inertias_to_parents(&mut model, RegroupOptions { gauge, to_children, symbolic });
         add_distinct_variant(
             &mut variants,
-            Variant { model, joints: joints.clone(), for_inverse_dynamics: to_children },
+            ModelVariant { model, joints: joints.clone(), for_inverse_dynamics: to_children },
         );
     }
     if !passes.frames {
         add_distinct_variant(
             &mut variants,
-            Variant { model: model.clone(), joints, for_inverse_dynamics: false },
+            ModelVariant { model: model.clone(), joints, for_inverse_dynamics: false },
         );
     }
     variants
@@ -117,8 +117,9 @@ const DISTRIBUTIONS: [(VanishingMomentConvention, bool, bool, bool); 6] = [
 ];
 
 /// Adds a variant to the list unless an equal one is in it.
-fn add_distinct_variant<'g>(variants: &mut Vec<Variant<'g>>, variant: Variant<'g>) {
-    let inertias_of_links = |f: &Variant<'g>| f.model.links.iter().map(|l| l.inertia).collect::<Vec<_>>();
+fn add_distinct_variant<'g>(variants: &mut Vec<ModelVariant<'g>>, variant: ModelVariant<'g>) {
+    let inertias_of_links =
+        |f: &ModelVariant<'g>| f.model.links.iter().map(|l| l.inertia).collect::<Vec<_>>();
     if !variants.iter().any(|known| inertias_of_links(known) == inertias_of_links(&variant)) {
         variants.push(variant);
     }

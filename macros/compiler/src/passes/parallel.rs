@@ -6,7 +6,7 @@
 //! Only the axes in which vectors are resolved change. Velocities and accelerations are still those of the
 //! links, so all vector recursions hold unchanged; a link's mass properties become expressions of its angle.
 
-use super::Variant;
+use super::ModelVariant;
 use super::motions::index_of_parallel_axis;
 use crate::expr::{Expr, Rotation};
 use crate::kinematics::coordinate_as_expression;
@@ -14,7 +14,7 @@ use crate::mechanism::{Link, Model, Motion};
 
 /// Returns variants in which links on parallel joints are resolved in common axes; the list is empty if there
 /// are no such joints.
-pub fn variants_in_common_axes<'g>(variants: &[Variant<'g>]) -> Vec<Variant<'g>> {
+pub fn variants_in_common_axes<'g>(variants: &[ModelVariant<'g>]) -> Vec<ModelVariant<'g>> {
     variants.iter().filter_map(variant_with_common_axes).collect()
 }
 
@@ -35,7 +35,7 @@ struct ParallelChainJoint {
     along: Option<f64>,
 }
 
-fn variant_with_common_axes<'g>(variant: &Variant<'g>) -> Option<Variant<'g>> {
+fn variant_with_common_axes<'g>(variant: &ModelVariant<'g>) -> Option<ModelVariant<'g>> {
     let members = parallel_chain_members(&variant.model);
     if members.iter().all(Option::is_none) {
         return None;

@@ -4,7 +4,7 @@ use super::closed_form::ClosedFormLoop;
 use super::contact::Surface;
 use super::holders::MovingPlacement;
 use super::reaction::ReleasedJoints;
-use super::scope::{Placed, PlacedElementKind, Scope};
+use super::scope::{PlacedElement, PlacedElementKind, Scope};
 use crate::diag::Diagnostics;
 use crate::expr::Rotation;
 use crate::kinematics::{CachedDerivatives, accelerations, joint_of_link, symbols_in, twists};
@@ -83,7 +83,7 @@ impl<'g> Builder<'_, 'g> {
         pose: Pose<'g>,
         kind: PlacedElementKind,
     ) {
-        self.scope.kinematics.places.insert(name.to_string(), Placed { link, pose, kind });
+        self.scope.kinematics.places.insert(name.to_string(), PlacedElement { link, pose, kind });
     }
 
     /// Records a joint whose reactions can be outputs. They are resolved in the axes of a frame on a link.

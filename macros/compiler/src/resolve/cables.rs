@@ -1,7 +1,7 @@
 //! Lengths of cables that wrap around spheres and cylinders.
 
 use super::call::Call;
-use super::scope::{AllowedQuantities, Context, Placed, Scope, Value};
+use super::scope::{AllowedQuantities, Context, PlacedElement, Scope, Value};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Extreme, Function, Vec3};
 use crate::language::{BodyOrInertiaMethod, SurfaceId};
@@ -31,7 +31,7 @@ impl<'g> Scope<'_, 'g> {
         let [a, b] = ends.map(|end| self.placement_of_moving_point(end, cx));
         let (a, b) = (a?, b?);
         let kinematics = &self.kinematics;
-        let position_from_center = |p: &Placed<'g>| {
+        let position_from_center = |p: &PlacedElement<'g>| {
             kinematics.components_in_link_axes(
                 &kinematics.position_between(p, &frame),
                 frame.link,
@@ -79,7 +79,7 @@ impl<'g> Scope<'_, 'g> {
         &self,
         e: &syntax::Expr,
         cx: &mut Diagnostics,
-    ) -> Option<(Placed<'g>, Expr<'g>, Option<Vec3<'g>>)> {
+    ) -> Option<(PlacedElement<'g>, Expr<'g>, Option<Vec3<'g>>)> {
         let ExprKind::Method(base, word, arguments) = &e.kind else {
             cx.report_error(e.place.clone(), "expected a sphere or a cylinder")
                 .add_help("write `drum.cylinder(radius, axis)` or `ball.sphere(radius)`");

@@ -3,7 +3,7 @@
 
 use super::call::Call;
 use super::quantities::vector_value_from_terms;
-use super::scope::{AllowedQuantities, Placed, PlacedElementKind, Scope, Value, VectorTerms};
+use super::scope::{AllowedQuantities, PlacedElement, PlacedElementKind, Scope, Value, VectorTerms};
 use crate::diag::Diagnostics;
 use crate::expr::sample::always_equals_number;
 use crate::expr::{Expr, Vec3};
@@ -119,8 +119,11 @@ impl<'g> Scope<'_, 'g> {
         let kinematics = &self.kinematics;
         let (link, zero) = (place.link, Vec3::zero(self.graph));
         // Any point fixed in the frame.
-        let from =
-            Placed { link: frame_link, pose: Pose::identity(self.graph), kind: PlacedElementKind::Body };
+        let from = PlacedElement {
+            link: frame_link,
+            pose: Pose::identity(self.graph),
+            kind: PlacedElementKind::Body,
+        };
         let resolve_in_link_axes =
             |terms: &VectorTerms<'g>| kinematics.components_in_link_axes(terms, link, zero);
         let rates = accelerates.then(|| {
@@ -171,7 +174,7 @@ impl<'g> Scope<'_, 'g> {
         let length = kinematics.components_in_link_axes(&n, link, zero).regularised_norm();
         let n: VectorTerms<'g> = n.into_iter().map(|(link, n)| (link, n.map(|c| c / length))).collect();
         let pose = Pose { translation: placed.pose.transform_point(*com), ..placed.pose.clone() };
-        let offset = kinematics.position_between(&Placed { pose, ..placed.clone() }, &about);
+        let offset = kinematics.position_between(&PlacedElement { pose, ..placed.clone() }, &about);
         let [axis_here, arm] =
             [&n, &offset].map(|terms| kinematics.components_in_link_axes(terms, link, zero));
         let arm = arm + -(axis_here * axis_here.dot(arm));

@@ -6,7 +6,7 @@ use super::elementary::ElementaryMotion;
 use super::holders::is_fixed_in_frame;
 use super::joint::{self, unscaled_coordinate};
 use super::reaction::RELEASED;
-use super::scope::{Placed, PlacedElementKind, Scope};
+use super::scope::{PlacedElement, PlacedElementKind, Scope};
 use crate::diag::Diagnostics;
 use crate::expr::Vec3;
 use crate::mechanism::{CoulombFriction, Dashpot, Inertia, InputEffect, Link, LinkId, Motion, Pose, Rule};
@@ -135,7 +135,9 @@ impl<'g> Builder<'_, 'g> {
             return (link, pose);
         };
         let Some(index) = release.index_of_released_joint(number) else { return (link, pose) };
-        release.frames.insert(number, Placed { link, pose: pose.clone(), kind: PlacedElementKind::Body });
+        release
+            .frames
+            .insert(number, PlacedElement { link, pose: pose.clone(), kind: PlacedElementKind::Body });
         let g = self.scope.graph;
         let (q, v) = (q + RELEASED * index, v + RELEASED * index);
         for k in 0..RELEASED {

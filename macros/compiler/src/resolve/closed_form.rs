@@ -4,7 +4,7 @@
 //! *Theoretical Kinematics*, 1979, ch. XI). The argument `branch` selects one of the two assembly modes.
 
 use super::elementary::ElementaryMotion;
-use super::scope::{Placed, PlacedElementKind, Scope};
+use super::scope::{PlacedElement, PlacedElementKind, Scope};
 use crate::diag::Diagnostics;
 use crate::expr::sample::always_equals_number;
 use crate::expr::{Expr, Rotation, Vec3};
@@ -158,7 +158,11 @@ fn rotation_pose<'g>(scope: &Scope<'_, 'g>, axis: Vec3<'g>, angle: Expr<'g>) -> 
 }
 
 /// Returns the frame of a joint on its parent, and its axis in that frame.
-fn joint_frame<'g>(scope: &Scope<'_, 'g>, j: usize, cx: &mut Diagnostics) -> Option<(Placed<'g>, Vec3<'g>)> {
+fn joint_frame<'g>(
+    scope: &Scope<'_, 'g>,
+    j: usize,
+    cx: &mut Diagnostics,
+) -> Option<(PlacedElement<'g>, Vec3<'g>)> {
     let joint = &scope.description.joints[j];
     let (link, pose) = scope.placement_of_joint_parent(&joint.parent.body, cx)?;
     let pose = pose.compose_with(&scope.frame_of_endpoint(&joint.parent, cx)?);
@@ -166,14 +170,14 @@ fn joint_frame<'g>(scope: &Scope<'_, 'g>, j: usize, cx: &mut Diagnostics) -> Opt
         ElementaryMotion::Turn(axis) | ElementaryMotion::Slide(axis) => *axis,
         _ => return None,
     };
-    Some((Placed { link, pose, kind: PlacedElementKind::Body }, axis))
+    Some((PlacedElement { link, pose, kind: PlacedElementKind::Body }, axis))
 }
 
 fn side_of_closed_form_loop<'g>(
     scope: &Scope<'_, 'g>,
     j: usize,
     end: &Endpoint,
-    frame: &Placed<'g>,
+    frame: &PlacedElement<'g>,
     cx: &mut Diagnostics,
 ) -> Option<LoopSide<'g>> {
     let joint = &scope.description.joints[j];
@@ -200,7 +204,7 @@ fn side_of_closed_form_loop<'g>(
 /// closed: the solution is that of the original mechanism.
 fn vector_in_frame_axes<'g>(
     scope: &Scope<'_, 'g>,
-    frame: &Placed<'g>,
+    frame: &PlacedElement<'g>,
     link: Option<LinkId>,
     v: Vec3<'g>,
 ) -> Vec3<'g> {

@@ -2,7 +2,7 @@
 
 use super::elementary::ElementaryMotion;
 use super::rows::ConstraintRows;
-use super::scope::{Placed, PlacedElementKind, Scope};
+use super::scope::{PlacedElement, PlacedElementKind, Scope};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Vec3};
 use crate::kinematics::jet::{self, Jet, MovingVector, RelativeLinkMotion};
@@ -65,7 +65,7 @@ fn resolve_closing_joint<'s, 'a, 'g>(
     let [parent, child] = [&joint.parent, &joint.child].map(|end| {
         let on_body = scope.frame_of_endpoint(end, cx)?;
         let (link, pose) = scope.placement_of_joint_parent(&end.body, cx)?;
-        Some(Placed { link, pose: pose.compose_with(&on_body), kind: PlacedElementKind::Body })
+        Some(PlacedElement { link, pose: pose.compose_with(&on_body), kind: PlacedElementKind::Body })
     });
     let (parent, child) = (parent?, child?);
     let joints = &scope.kinematics.joints;
@@ -78,8 +78,8 @@ fn resolve_closing_joint<'s, 'a, 'g>(
 struct ClosingJoint<'s, 'a, 'g> {
     scope: &'s Scope<'a, 'g>,
     j: usize,
-    parent: Placed<'g>,
-    child: Placed<'g>,
+    parent: PlacedElement<'g>,
+    child: PlacedElement<'g>,
     on_parent: RelativeLinkMotion<'g>,
     on_child: RelativeLinkMotion<'g>,
 }

@@ -2,7 +2,7 @@
 
 use super::call::Call;
 use super::quantities::{vector_terms_by_link, vector_value_from_terms};
-use super::scope::{AllowedQuantities, Context, Placed, Scope, Value};
+use super::scope::{AllowedQuantities, Context, PlacedElement, Scope, Value};
 use crate::diag::Diagnostics;
 use crate::expr::diff::DirectionalDerivative;
 use crate::expr::replace::substitute_symbols;
@@ -20,7 +20,7 @@ impl<'g> Scope<'_, 'g> {
         &self,
         (rotation, name): (language::Rotation, &Callee),
         arguments: &[syntax::Expr],
-        start: &Placed<'g>,
+        start: &PlacedElement<'g>,
         cx: &mut Diagnostics,
     ) -> Option<Rotation<'g>> {
         let context = Context::new(AllowedQuantities::Placement, Some((start.link, start.pose.clone())));
@@ -66,7 +66,7 @@ impl<'g> Scope<'_, 'g> {
         &self,
         curve: &syntax::Expr,
         along: &syntax::Expr,
-        start: &Placed<'g>,
+        start: &PlacedElement<'g>,
         cx: &mut Diagnostics,
     ) -> Option<Rotation<'g>> {
         let ([first, second, _], link) = self.curve_derivatives_by_coordinate("frenet", curve, along, cx)?;
@@ -211,7 +211,7 @@ impl<'g> Scope<'_, 'g> {
         let moves = [0, 1, 2].map(|k| Quantity::Displacement(k).symbol());
         let displacement = Vec3(moves.map(|s| self.graph.symbol(s)));
         let pose = Pose { translation: placed.pose.translation + displacement, ..placed.pose.clone() };
-        let moved = Placed { pose, ..placed.clone() };
+        let moved = PlacedElement { pose, ..placed.clone() };
         self.records.borrow_mut().definition_values.clear();
         self.records.borrow_mut().displaced.push((name.to_string(), moved));
         let value = self.resolve_scalar(field, cx);

@@ -3,7 +3,7 @@
 
 use super::contact::{Surface, surface_pieces};
 use super::joint::joint_drawing_symbol;
-use super::scope::{AllowedQuantities, Context, Placed, PlacedElementKind, Scope};
+use super::scope::{AllowedQuantities, Context, PlacedElement, PlacedElementKind, Scope};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Rotation, Vec3};
 use crate::kinematics::symbols_in;
@@ -406,7 +406,7 @@ impl<'g> DrawnElements<'_, '_, 'g> {
             InputEffect::Torque { link, about } => (*link, Vec3::zero(g), about, true),
         };
         let [(axes, direction)] = direction.as_slice() else { return None };
-        let place = Placed {
+        let place = PlacedElement {
             link: Some(link),
             pose: Pose { rotation: Rotation::identity(g), translation: point },
             kind: PlacedElementKind::Point,

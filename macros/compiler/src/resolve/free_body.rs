@@ -10,7 +10,7 @@ use super::holders::{MovingPlacement, connections_of_body, name_of_connection};
 use super::output::output_axes;
 use super::power::power_of_input;
 use super::reaction::{RELEASED, ReleasedJoints};
-use super::scope::{AllowedQuantities, Context, Placed, PlacedElementKind, Scope, VectorTerms};
+use super::scope::{AllowedQuantities, Context, PlacedElement, PlacedElementKind, Scope, VectorTerms};
 use crate::diag::Diagnostics;
 use crate::expr::eval::eval;
 use crate::expr::sample::sample_of_symbol;
@@ -40,7 +40,7 @@ struct FreedBody<'s, 'a, 'g> {
     name: String,
     link: Option<LinkId>,
     mass: Expr<'g>,
-    center: Placed<'g>,
+    center: PlacedElement<'g>,
     /// Released joints: index among the released joints, and whether the body is the child.
     joints: Vec<(usize, bool)>,
     /// Link and pose of the axes in which the diagram is resolved.
@@ -166,7 +166,7 @@ fn rigid_group_mass_properties<'g>(
     (name, joints): (&str, &[(usize, bool)]),
     output: &Definition,
     cx: &mut Diagnostics,
-) -> Option<(Option<LinkId>, Expr<'g>, Placed<'g>)> {
+) -> Option<(Option<LinkId>, Expr<'g>, PlacedElement<'g>)> {
     let g = scope.graph;
     let kinematics = &scope.kinematics;
     let link = kinematics.places.get(name)?.link;
@@ -198,7 +198,7 @@ fn rigid_group_mass_properties<'g>(
     let at = &kinematics.places.get(name)?.pose;
     let translation = if mass.is_zero() { at.translation } else { sum.map(|c| c / mass) };
     let pose = Pose { translation, rotation: at.rotation.clone() };
-    Some((link, mass, Placed { link, pose, kind: PlacedElementKind::Point }))
+    Some((link, mass, PlacedElement { link, pose, kind: PlacedElementKind::Point }))
 }
 
 /// Returns the first link of the motions of a released joint.
@@ -227,7 +227,7 @@ impl<'g> FreedBody<'_, '_, 'g> {
         kinematics.components_in_link_axes(&terms, self.axes.0, Vec3::zero(self.scope.graph))
     }
 
-    fn position_of_placed(&self, placed: &Placed<'g>) -> VectorTerms<'g> {
+    fn position_of_placed(&self, placed: &PlacedElement<'g>) -> VectorTerms<'g> {
         self.scope.kinematics.position_of_point(placed.link, placed.pose.translation)
     }
 
@@ -430,7 +430,8 @@ impl<'g> FreedBody<'_, '_, 'g> {
         ends.into_iter().find_map(|end| {
             let (link, pose) = self.scope.placement_of_joint_parent(&end.body, &mut unread)?;
             let on_body = self.scope.frame_of_endpoint(end, &mut unread)?;
-            let placed = Placed { link, pose: pose.compose_with(&on_body), kind: PlacedElementKind::Point };
+            let placed =
+                PlacedElement { link, pose: pose.compose_with(&on_body), kind: PlacedElementKind::Point };
             (link == self.link).then(|| self.position_of_placed(&placed))
         })
     }

@@ -266,7 +266,8 @@ fn axis_of_rotation_and_translation<'g>(
     }
 }
 
-/// Returns the coordinate with these indices, with ratio one and offset zero.
+/// Returns the coordinate whose value is entry `q` of the configuration and whose rate is entry `v` of the
+/// velocity, with ratio one and offset zero.
 pub fn unscaled_coordinate(q: InQ, v: InV) -> Coordinate {
     Coordinate { q, v, ratio: 1.0, offset: 0.0 }
 }

@@ -4,7 +4,7 @@
 use super::call::Call;
 use super::quantities::{vector_terms_by_link, vector_value_from_terms};
 use super::resolved::ResolvedMatrix;
-use super::scope::{AllowedQuantities, Axes, Placed, PlacedElements, Scope, Value, VectorTerms};
+use super::scope::{AllowedQuantities, Axes, PlacedElement, PlacedElements, Scope, Value, VectorTerms};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{Expr, Mat3, Rotation, Vec3};
 use crate::kinematics::express_in_link_axes;
@@ -165,7 +165,7 @@ impl<'g> Scope<'_, 'g> {
         match e.as_name()? {
             GROUND => Some([0, 1, 2].map(|k| vec![(None, coordinate_axis(k))])),
             name => {
-                let Placed { link, pose, .. } = self.placement_of_element(name)?;
+                let PlacedElement { link, pose, .. } = self.placement_of_element(name)?;
                 Some([0, 1, 2].map(|k| vec![(link, pose.rotation.vector_in_parent_axes(coordinate_axis(k)))]))
             }
         }

@@ -4,7 +4,7 @@
 
 use super::call::{Call, flatten_slashes};
 use super::quantities::vector_value_from_terms;
-use super::scope::{AllowedQuantities, MassProperties, Placed, Scope, Value, VectorTerms};
+use super::scope::{AllowedQuantities, MassProperties, PlacedElement, Scope, Value, VectorTerms};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Vec3};
 use crate::mechanism::Pose;
@@ -69,7 +69,7 @@ impl<'g> Scope<'_, 'g> {
                 continue;
             };
             let pose = Pose { translation: center, rotation: placed.pose.rotation.clone() };
-            let offset = kinematics.position_between(&Placed { pose, ..placed.clone() }, about);
+            let offset = kinematics.position_between(&PlacedElement { pose, ..placed.clone() }, about);
             let r = kinematics.components_in_link_axes(&offset, link, zero);
             momenta.push((link, spin + r.cross(v * mass)));
         }
@@ -105,7 +105,7 @@ impl<'g> Scope<'_, 'g> {
                 translation: placed.pose.transform_point(com),
                 rotation: placed.pose.rotation.clone(),
             };
-            let offset = kinematics.position_between(&Placed { pose, ..placed }, &from);
+            let offset = kinematics.position_between(&PlacedElement { pose, ..placed }, &from);
             let share = mass / total;
             sum.extend(offset.into_iter().map(|(link, r)| (link, r * share)));
         }
@@ -146,15 +146,15 @@ impl<'g> Scope<'_, 'g> {
     /// Returns the moment of inertia `a·J b` of a body about a point.
     pub fn moment_of_inertia_about_point(
         &self,
-        (placed, (mass, com, central)): &(Placed<'g>, MassProperties<'g>),
-        about: &Placed<'g>,
+        (placed, (mass, com, central)): &(PlacedElement<'g>, MassProperties<'g>),
+        about: &PlacedElement<'g>,
         [a, b]: [&VectorTerms<'g>; 2],
     ) -> Expr<'g> {
         let kinematics = &self.kinematics;
         let (link, zero) = (placed.link, Vec3::zero(self.graph));
         let pose =
             Pose { translation: placed.pose.transform_point(*com), rotation: placed.pose.rotation.clone() };
-        let offset = kinematics.position_between(&Placed { pose, ..placed.clone() }, about);
+        let offset = kinematics.position_between(&PlacedElement { pose, ..placed.clone() }, about);
         let [a, b, r] = [a, b, &offset].map(|parts| kinematics.components_in_link_axes(parts, link, zero));
         let central = placed.pose.rotation.symmetric_tensor_in_parent_axes(*central);
         let shift = (r.dot(r) * a.dot(b) - a.dot(r) * r.dot(b)) * *mass;
@@ -166,7 +166,7 @@ impl<'g> Scope<'_, 'g> {
         &self,
         e: &syntax::Expr,
         cx: &mut Diagnostics,
-    ) -> Option<Vec<(Placed<'g>, MassProperties<'g>)>> {
+    ) -> Option<Vec<(PlacedElement<'g>, MassProperties<'g>)>> {
         let (ExprKind::Tuple(items) | ExprKind::Array(items)) = &e.kind else {
             return Some(vec![self.resolve_body_with_mass(e, cx)?]);
         };
@@ -195,7 +195,7 @@ impl<'g> Scope<'_, 'g> {
         &self,
         e: &syntax::Expr,
         cx: &mut Diagnostics,
-    ) -> Option<(Placed<'g>, MassProperties<'g>)> {
+    ) -> Option<(PlacedElement<'g>, MassProperties<'g>)> {
         let ExprKind::Name(name) = &e.kind else {
             cx.report_error(e.place.clone(), "expected a body").add_help("name a body or a particle");
             return None;

@@ -307,7 +307,7 @@ impl<'g> Scope<'_, 'g> {
         context.compared.clear();
         context.axes = context.axes.map(|_| (None, Pose::identity(self.graph)));
         let value = self.call_in_context(context, |scope| scope.resolve_value(&d.value, cx))?;
-        if value.declared_rank() == d.rank {
+        if value.value_rank() == d.rank {
             return Some(value);
         }
         if self.description.speeds.iter().any(|speed| speed.text == *name) {
@@ -321,7 +321,7 @@ impl<'g> Scope<'_, 'g> {
             );
             return None;
         }
-        let (is, meant) = (value.kind_with_article(), value.declared_rank().element_type_name());
+        let (is, meant) = (value.kind_with_article(), value.value_rank().element_type_name());
         cx.report_error(
             e.place.clone(),
             format!("`{name}` is {is}, but it is declared as a {}", d.rank.element_type_name()),

@@ -6,7 +6,7 @@ use super::builder::Builder;
 use super::carriers::are_particle_axes_used;
 use super::chain::report_joint_argument_errors;
 use super::holders;
-use super::scope::{AllowedQuantities, Context, Placed, PlacedElementKind};
+use super::scope::{AllowedQuantities, Context, PlacedElement, PlacedElementKind};
 use super::tree::PlacementOrder;
 use crate::diag::{Diagnostics, join_names_with_and};
 use crate::expr::{Rotation, Vec3};
@@ -229,8 +229,8 @@ impl<'a, 'g> Builder<'a, 'g> {
         }
     }
 
-    fn ground_placement(&self) -> Placed<'g> {
-        Placed { link: None, pose: Pose::identity(self.scope.graph), kind: PlacedElementKind::Body }
+    fn ground_placement(&self) -> PlacedElement<'g> {
+        PlacedElement { link: None, pose: Pose::identity(self.scope.graph), kind: PlacedElementKind::Body }
     }
 
     /// Returns the axes of a frame, at the origin of its start frame.
@@ -269,7 +269,7 @@ impl<'a, 'g> Builder<'a, 'g> {
     }
 
     /// Returns the placement of the body or frame with this name.
-    fn placement_of_named_axes(&self, e: &Expr, cx: &mut Diagnostics) -> Option<Placed<'g>> {
+    fn placement_of_named_axes(&self, e: &Expr, cx: &mut Diagnostics) -> Option<PlacedElement<'g>> {
         let ExprKind::Name(name) = &e.kind else {
             cx.report_error(e.place.clone(), "expected a body or a frame")
                 .add_help("write `#[frame(ground, z(angle))]`");
@@ -384,7 +384,7 @@ impl<'a, 'g> Builder<'a, 'g> {
     /// irrelevant and may differ.
     fn placement_at_offset(
         &self,
-        frame: Placed<'g>,
+        frame: PlacedElement<'g>,
         at: &Expr,
         free: bool,
         cx: &mut Diagnostics,

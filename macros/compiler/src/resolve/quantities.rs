@@ -3,7 +3,8 @@
 
 use super::call::Call;
 use super::scope::{
-    AllowedQuantities, Axes, Context, Placed, PlacedElementKind, PlacedElements, Scope, Value, VectorTerms,
+    AllowedQuantities, Axes, Context, PlacedElement, PlacedElementKind, PlacedElements, Scope, Value,
+    VectorTerms,
 };
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{Graph, Vec3};
@@ -120,11 +121,13 @@ impl<'g> Scope<'_, 'g> {
 
     /// Returns the placement of an element with a position: a body, a point, a particle, `body.at(vector)` or
     /// the ground.
-    pub fn resolve_placement(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Placed<'g>> {
+    pub fn resolve_placement(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<PlacedElement<'g>> {
         match &e.kind {
-            ExprKind::Name(name) if name == GROUND => {
-                Some(Placed { link: None, pose: Pose::identity(self.graph), kind: PlacedElementKind::Body })
-            }
+            ExprKind::Name(name) if name == GROUND => Some(PlacedElement {
+                link: None,
+                pose: Pose::identity(self.graph),
+                kind: PlacedElementKind::Body,
+            }),
             ExprKind::Name(name) => match self.placement_of_element(name) {
                 Some(p) if p.kind != PlacedElementKind::Frame => Some(p),
                 Some(_) => {
@@ -149,7 +152,7 @@ impl<'g> Scope<'_, 'g> {
                     self.call_in_context(context, |scope| scope.resolve_own_axes_vector(&arguments[0], cx))?;
                 let pose =
                     Pose { translation: base.pose.transform_point(offset), rotation: base.pose.rotation };
-                Some(Placed { link: base.link, pose, kind: PlacedElementKind::Point })
+                Some(PlacedElement { link: base.link, pose, kind: PlacedElementKind::Point })
             }
             _ => {
                 cx.report_error(e.place.clone(), "expected a point")
@@ -180,7 +183,11 @@ impl<'g> Scope<'_, 'g> {
     /// Returns the placement of an element with a position, or of a point that may move on its body:
     /// `body.at(vector)` with a vector of any axes and coordinates. Velocity and acceleration of such a point
     /// are those of the body at that position.
-    pub fn placement_of_moving_point(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Placed<'g>> {
+    pub fn placement_of_moving_point(
+        &self,
+        e: &syntax::Expr,
+        cx: &mut Diagnostics,
+    ) -> Option<PlacedElement<'g>> {
         match &e.kind {
             ExprKind::Method(base, method, arguments)
                 if method.id == Some(BodyOrInertiaMethod::At) && arguments.len() == 1 =>
@@ -193,7 +200,7 @@ impl<'g> Scope<'_, 'g> {
                 let offset =
                     self.kinematics.components_in_link_axes(&offset, base.link, Vec3::zero(self.graph));
                 let pose = Pose { translation: base.pose.translation + offset, rotation: base.pose.rotation };
-                Some(Placed { link: base.link, pose, kind: PlacedElementKind::Point })
+                Some(PlacedElement { link: base.link, pose, kind: PlacedElementKind::Point })
             }
             _ => self.resolve_placement(e, cx),
         }
@@ -300,8 +307,8 @@ impl<'g> PlacedElements<'g> {
     /// Resolves a call of `v(y / x / frame)`.
     pub fn relative_velocity_in_frame(
         &self,
-        y: &Placed<'g>,
-        x: &Placed<'g>,
+        y: &PlacedElement<'g>,
+        x: &PlacedElement<'g>,
         frame: Option<LinkId>,
         graph: &'g Graph,
     ) -> VectorTerms<'g> {
@@ -317,8 +324,8 @@ impl<'g> PlacedElements<'g> {
     /// Resolves a call of `a(y / x / frame)`.
     pub fn relative_acceleration_in_frame(
         &self,
-        y: &Placed<'g>,
-        x: &Placed<'g>,
+        y: &PlacedElement<'g>,
+        x: &PlacedElement<'g>,
         frame: Option<LinkId>,
         graph: &'g Graph,
     ) -> VectorTerms<'g> {

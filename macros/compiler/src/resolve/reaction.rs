@@ -5,7 +5,7 @@
 //! constraints.
 
 use super::call::Call;
-use super::scope::{AllowedQuantities, Axes, Placed, Scope, Value, VectorTerms};
+use super::scope::{AllowedQuantities, Axes, PlacedElement, Scope, Value, VectorTerms};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Vec3};
 use crate::kinematics::symbols_in;
@@ -45,7 +45,7 @@ pub struct ReleasedJoints<'a, 'g> {
     pub retained: &'a [Constraint<'g>],
     /// Frame of each released joint on its parent before the release, by index of the joint. Bodies placed by
     /// `at` and `frame` have their own frame in this map.
-    pub frames: BTreeMap<usize, Placed<'g>>,
+    pub frames: BTreeMap<usize, PlacedElement<'g>>,
     /// Name and generalized forces on the coordinates of released joints, for each force element, energy and
     /// dissipation.
     pub forces: Vec<(String, Vec<Expr<'g>>)>,

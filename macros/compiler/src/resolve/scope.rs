@@ -42,7 +42,7 @@ pub struct ResolutionRecords<'g> {
     /// Whether a constraint on configurations is being resolved.
     pub in_holonomic_constraint: bool,
     /// Placements that replace those of the elements while a field is differentiated.
-    pub displaced: Vec<(String, Placed<'g>)>,
+    pub displaced: Vec<(String, PlacedElement<'g>)>,
     /// Values of definitions used by the definition that is being evaluated. Each is evaluated once, even if
     /// several others use it.
     pub definition_values: DefinitionValues<'g>,
@@ -78,7 +78,7 @@ pub enum Value<'g> {
 
 impl Value<'_> {
     /// Returns the rank as which the value can be declared.
-    pub fn declared_rank(&self) -> Rank {
+    pub fn value_rank(&self) -> Rank {
         match self {
             Value::Scalar(_) => Rank::Scalar,
             Value::Vector(_) => Rank::Vector,
@@ -153,7 +153,7 @@ pub enum PlacedElementKind {
 
 /// Placed element: the link in which it is fixed, and its pose.
 #[derive(Clone, Debug)]
-pub struct Placed<'g> {
+pub struct PlacedElement<'g> {
     /// Link in which the element is fixed; `None` for the ground.
     pub link: Option<LinkId>,
     /// Pose of the element relative to its link.
@@ -183,7 +183,7 @@ pub type MassProperties<'g> = (Expr<'g>, Vec3<'g>, Sym3<'g>);
 #[derive(Debug, Default)]
 pub struct PlacedElements<'g> {
     /// Placements of the elements, by name of the element.
-    pub places: BTreeMap<String, Placed<'g>>,
+    pub places: BTreeMap<String, PlacedElement<'g>>,
     /// Plain coordinates by full name; true for an angle.
     pub coordinates: Vec<NamedCoordinate>,
     /// Coordinates of each joint.
@@ -258,7 +258,7 @@ impl<'g> PlacedElements<'g> {
     }
 
     /// Returns `r(y / x)`; links that carry both points cancel.
-    pub fn position_between(&self, y: &Placed<'g>, x: &Placed<'g>) -> VectorTerms<'g> {
+    pub fn position_between(&self, y: &PlacedElement<'g>, x: &PlacedElement<'g>) -> VectorTerms<'g> {
         let mut sum = self.position_of_point(y.link, y.pose.translation);
         for (axes, v) in self.position_of_point(x.link, x.pose.translation) {
             match sum.iter_mut().find(|(known, _)| *known == axes) {
@@ -271,7 +271,7 @@ impl<'g> PlacedElements<'g> {
     }
 
     /// Returns the velocity of a point relative to the ground.
-    pub fn velocity_of_point(&self, p: &Placed<'g>) -> VectorTerms<'g> {
+    pub fn velocity_of_point(&self, p: &PlacedElement<'g>) -> VectorTerms<'g> {
         p.link.map_or(Vec::new(), |l| {
             let t = &self.twists[l.0];
             vec![(p.link, t.linear + t.angular.cross(p.pose.translation))]
@@ -279,7 +279,7 @@ impl<'g> PlacedElements<'g> {
     }
 
     /// Returns the acceleration of a point relative to the ground.
-    pub fn acceleration_of_point(&self, p: &Placed<'g>) -> VectorTerms<'g> {
+    pub fn acceleration_of_point(&self, p: &PlacedElement<'g>) -> VectorTerms<'g> {
         p.link.map_or(Vec::new(), |l| {
             let (t, a, r) = (&self.twists[l.0], &self.accelerations[l.0], p.pose.translation);
             vec![(p.link, a.linear + a.angular.cross(r) + t.angular.cross(t.angular.cross(r)))]
@@ -297,7 +297,7 @@ impl<'g> Scope<'_, 'g> {
     }
 
     /// Returns the placement of an element by its name.
-    pub fn placement_of_element(&self, name: &str) -> Option<Placed<'g>> {
+    pub fn placement_of_element(&self, name: &str) -> Option<PlacedElement<'g>> {
         let records = self.records.borrow();
         let displaced = records.displaced.iter().rev().find(|(displaced, _)| displaced == name);
         displaced.map(|(_, placed)| placed).or_else(|| self.kinematics.places.get(name)).cloned()

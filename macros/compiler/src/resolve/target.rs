@@ -1,6 +1,6 @@
 //! Targets of force elements and limits: coordinates, points, and lengths given by expressions.
 
-use super::scope::{Placed, Scope};
+use super::scope::{PlacedElement, Scope};
 use super::terms::{StretchWithRate, stretch_from_expression};
 use crate::diag::{Diagnostics, Place, join_with_or};
 use crate::language::BodyOrInertiaMethod;
@@ -12,7 +12,7 @@ pub enum ResolvedTarget<'g> {
     /// Coordinate. The flag is true for an angle, `None` if it may be an angle or a length.
     Coordinate(Coordinate, Option<bool>),
     /// Point of a body, a particle, or a named point.
-    Point(Placed<'g>),
+    Point(PlacedElement<'g>),
     /// Target that is a length or angle given by an expression.
     Expression(StretchWithRate<'g>),
 }

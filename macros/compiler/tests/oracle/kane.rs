@@ -34,7 +34,7 @@ impl State {
 }
 
 /// Poses, masses and joint coordinates of all bodies at one state, as Taylor series in time.
-struct World {
+struct BodyMotions {
     poses: Vec<Pose>,
     pieces: Vec<MovingBody>,
     /// For each body, the joint coordinates that force elements can act on.
@@ -115,8 +115,8 @@ pub fn coordinate_and_velocity_counts(spec: &MechanismSpec) -> (usize, usize) {
     })
 }
 
-fn world_of_state(spec: &MechanismSpec, state: &State) -> World {
-    let mut world = World { poses: Vec::new(), pieces: Vec::new(), coordinates: Vec::new() };
+fn world_of_state(spec: &MechanismSpec, state: &State) -> BodyMotions {
+    let mut world = BodyMotions { poses: Vec::new(), pieces: Vec::new(), coordinates: Vec::new() };
     let (mut q0, mut v0) = (0, 0);
     for body in &spec.bodies {
         let (nq, nv) = body.kind.coordinate_and_velocity_counts();
@@ -163,7 +163,7 @@ fn inertia_in_body_axes(body: &Body) -> [[f64; 3]; 3] {
     from_fn(|i| from_fn(|j| (0..3).map(|k| r[i][k].0[0].re * body.moments[k] * r[j][k].0[0].re).sum()))
 }
 
-fn position_of_end(world: &World, end: &AttachmentPoint) -> Vector {
+fn position_of_end(world: &BodyMotions, end: &AttachmentPoint) -> Vector {
     match end.body {
         None => constant_vector(end.at),
         Some(k) => {
@@ -172,12 +172,12 @@ fn position_of_end(world: &World, end: &AttachmentPoint) -> Vector {
     }
 }
 
-fn distance_between_ends(world: &World, a: &AttachmentPoint, b: &AttachmentPoint) -> Jet {
+fn distance_between_ends(world: &BodyMotions, a: &AttachmentPoint, b: &AttachmentPoint) -> Jet {
     let d = difference_of_vectors(position_of_end(world, a), position_of_end(world, b));
     dot(d, d).sqrt()
 }
 
-fn length_of_path(world: &World, path: &ForcePath) -> Jet {
+fn length_of_path(world: &BodyMotions, path: &ForcePath) -> Jet {
     match path {
         ForcePath::Rope([a, b, c]) => distance_between_ends(world, a, b) + distance_between_ends(world, b, c),
         ForcePath::Cable { ends, around, radius, axis } => cable_length(world, ends, around, *radius, *axis),
@@ -187,7 +187,7 @@ fn length_of_path(world: &World, path: &ForcePath) -> Jet {
 /// Returns the ends of a cable relative to the centre of its obstacle, projected on the plane normal to the
 /// axis, and the distance between the ends along the axis.
 fn cable_ends_in_obstacle_plane(
-    world: &World,
+    world: &BodyMotions,
     ends: &[AttachmentPoint; 2],
     around: &AttachmentPoint,
     axis: Option<[f64; 3]>,
@@ -206,7 +206,7 @@ fn cable_ends_in_obstacle_plane(
 /// Returns the length of a taut cable. In the plane normal to the axis, or in the plane of the ends and the
 /// centre of a ball, the cable is straight on the unrolled surface.
 fn cable_length(
-    world: &World,
+    world: &BodyMotions,
     ends: &[AttachmentPoint; 2],
     around: &AttachmentPoint,
     radius: f64,
@@ -312,7 +312,7 @@ pub fn power_of_forces(spec: &MechanismSpec, state: &State, lambda: &[f64]) -> C
 
 /// Returns the generalized force for one generalized speed. `partial` is the motion in which only this
 /// generalized speed is nonzero, with the value one.
-fn generalized_force(spec: &MechanismSpec, now: &World, partial: &World) -> C {
+fn generalized_force(spec: &MechanismSpec, now: &BodyMotions, partial: &BodyMotions) -> C {
     let mut tau = complex_from_real(0.0);
     for (piece, moved) in now.pieces.iter().zip(&partial.pieces) {
         tau += piece.generalized_inertial_force(moved, spec.gravity);

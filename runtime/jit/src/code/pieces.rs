@@ -4,7 +4,7 @@
 //! are copied to all lanes first. Functions that have no instruction are called for one lane at a time.
 
 use super::plan::needs_function_call;
-use crate::layout::Layout;
+use crate::layout::InputLayout;
 use linkwork_compiler::expr::Symbol;
 use linkwork_compiler::lower::{Angles, Op, Operand, Program};
 
@@ -24,8 +24,9 @@ pub struct ProgramInPieces {
 }
 
 impl ProgramInPieces {
-    /// Splits the values of a program. Inputs that are adjacent in memory are read together.
-    pub fn split_program(program: &Program, layout: &Layout) -> Result<ProgramInPieces, String> {
+    /// Splits each value of a program into pieces of one, two or four lanes, which fit a register. Inputs
+    /// that are adjacent in memory are read together.
+    pub fn split_program(program: &Program, layout: &InputLayout) -> Result<ProgramInPieces, String> {
         let covered = Angles::find_angles(program).covered;
         let mut splitter = LaneSplitter {
             from: program,
@@ -109,7 +110,7 @@ struct SplitValue {
 
 struct LaneSplitter<'a> {
     from: &'a Program,
-    layout: &'a Layout,
+    layout: &'a InputLayout,
     program: Program,
     widths: Vec<usize>,
     values: Vec<SplitValue>,

@@ -8,7 +8,7 @@ mod angles;
 mod registers;
 
 use super::pieces::ProgramInPieces;
-use crate::layout::Layout;
+use crate::layout::InputLayout;
 pub use angles::AngleGroup;
 use linkwork_compiler::expr::Function;
 use linkwork_compiler::lower::{Angles, Op, Operand, Program};
@@ -103,7 +103,7 @@ impl ProgramPlan {
     /// Plans a program whose first `results` outputs are its results, for a number of registers.
     pub fn new(
         pieces: ProgramInPieces,
-        layout: &Layout,
+        layout: &InputLayout,
         results: usize,
         registers: u8,
     ) -> Result<ProgramPlan, String> {
@@ -149,7 +149,7 @@ struct Planner<'a> {
     program: &'a Program,
     /// Number of lanes of each value.
     widths: &'a [usize],
-    layout: &'a Layout,
+    layout: &'a InputLayout,
     plan: ProgramPlan,
     /// Indices of the constants, by the bits of their lanes.
     known: HashMap<Vec<u64>, usize>,

@@ -3,7 +3,7 @@
 
 use super::plan::needs_function_call;
 use super::{Code, write_sines_and_cosines};
-use crate::layout::Layout;
+use crate::layout::InputLayout;
 use crate::table::AnyTable;
 use linkwork::Table;
 use linkwork_compiler::catalogue::Argument;
@@ -250,7 +250,7 @@ impl LaneProgramBuilder {
 }
 
 /// Evaluates a program; sines and cosines are those of the functions that machine code calls.
-fn evaluate(program: &Program, layout: &Layout, inputs: &[&[f64]], table: &AnyTable) -> Vec<f64> {
+fn evaluate(program: &Program, layout: &InputLayout, inputs: &[&[f64]], table: &AnyTable) -> Vec<f64> {
     let value_of_operand = |values: &[f64], operand: Operand| match operand {
         Operand::Const(c) => c,
         Operand::Symbol(symbol) => {
@@ -276,12 +276,12 @@ fn evaluate(program: &Program, layout: &Layout, inputs: &[&[f64]], table: &AnyTa
 ///
 /// `random_program` returns a program, and the program without lanes that computes the same bits.
 fn compare_code_with_evaluation(
-    compile: fn(&Program, &Layout, usize) -> Result<Code, String>,
+    compile: fn(&Program, &InputLayout, usize) -> Result<Code, String>,
     random_program: fn(&mut Random) -> [Program; 2],
 ) {
     let count = std::env::var("LINKWORK_PROGRAMS").ok().and_then(|count| count.parse().ok());
     let first = std::env::var("LINKWORK_SEED").ok().and_then(|seed| seed.parse().ok()).unwrap_or(0);
-    let layout = Layout::new(&ARGUMENTS).expect("seven arguments");
+    let layout = InputLayout::new(&ARGUMENTS).expect("seven arguments");
     let table = Table::new([&[-1.0, 0.0, 2.0]], &[1.0, -0.5, 3.0]).map(Table::smooth);
     let tables = [AnyTable::from(table.expect("increasing points"))];
     for seed in first..first + count.unwrap_or(PROGRAMS) {

@@ -3,7 +3,7 @@
 //! A module imports its memory and the elementary functions that WebAssembly has no instruction for. Each
 //! exported function takes the addresses of its inputs, then the address of its result.
 
-use crate::layout::Layout;
+use crate::layout::InputLayout;
 use linkwork_compiler::expr::{Extreme, Function as Elementary, Lookup, Symbol};
 use linkwork_compiler::lower::{Op, Operand, Program};
 
@@ -47,7 +47,7 @@ impl BinaryModule {
     /// # Errors
     ///
     /// The program has lanes, or reads values that are no inputs of the layout.
-    pub fn add(&mut self, name: &str, program: &Program, layout: &Layout) -> Result<(), String> {
+    pub fn add(&mut self, name: &str, program: &Program, layout: &InputLayout) -> Result<(), String> {
         let kind = self.find_or_add_type(vec![I32; layout.len() + 1], Vec::new());
         let mut writer = FunctionBodyWriter {
             module: self,
@@ -146,7 +146,7 @@ enum ResultLocation {
 struct FunctionBodyWriter<'a> {
     module: &'a mut BinaryModule,
     program: &'a Program,
-    layout: &'a Layout,
+    layout: &'a InputLayout,
     code: Vec<u8>,
     values: Vec<ResultLocation>,
     locals: usize,

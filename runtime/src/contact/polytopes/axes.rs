@@ -1,6 +1,6 @@
 //! Separating directions of two polytopes: face normals, and common normals of edges.
 
-use super::{MAX_EDGES, MAX_VERTICES, Placed, constant};
+use super::{MAX_EDGES, MAX_VERTICES, PlacedPolytope, constant};
 use crate::Real;
 use nalgebra::Vector3;
 
@@ -45,7 +45,7 @@ pub(super) struct SeparationBounds<T> {
 
 impl<T: Real> SeparationBounds<T> {
     /// Returns the bounds that the mean positions of the vertices give.
-    pub(super) fn bounds_from_centers(first: &Placed<'_, T>, second: &Placed<'_, T>) -> Self {
+    pub(super) fn bounds_from_centers(first: &PlacedPolytope<'_, T>, second: &PlacedPolytope<'_, T>) -> Self {
         SeparationBounds { between: Some(second.center() - first.center()) }
     }
 
@@ -87,8 +87,8 @@ fn rounding_slack_of_bound<T: Real>(between: &Vector3<T>) -> T {
 /// a face of the larger polytope is chosen; for polytopes of equal size, of the first one if `height` is
 /// positive. The order of the polytopes therefore has no effect.
 pub(super) fn best_face_axis<T: Real>(
-    first: &Placed<'_, T>,
-    second: &Placed<'_, T>,
+    first: &PlacedPolytope<'_, T>,
+    second: &PlacedPolytope<'_, T>,
     height: T,
     tolerance: T,
     bounds: &SeparationBounds<T>,
@@ -110,7 +110,7 @@ pub(super) fn best_face_axis<T: Real>(
 
 /// Returns the largest separation along a face normal of one polytope, and the index of the face.
 fn best_separating_face<T: Real>(
-    (own, other): (&Placed<'_, T>, &Placed<'_, T>),
+    (own, other): (&PlacedPolytope<'_, T>, &PlacedPolytope<'_, T>),
     is_second: bool,
     tolerance: T,
     bounds: &SeparationBounds<T>,
@@ -132,8 +132,8 @@ fn best_separating_face<T: Real>(
 /// Returns the pair of edges with the largest separation along their common normal; `None` if no separation
 /// exceeds that of the best face, or no common normal is a direction in which the polytopes touch.
 pub(super) fn best_edge_axis<T: Real>(
-    first: &Placed<'_, T>,
-    second: &Placed<'_, T>,
+    first: &PlacedPolytope<'_, T>,
+    second: &PlacedPolytope<'_, T>,
     face: T,
     bounds: &SeparationBounds<T>,
 ) -> Option<EdgeAxis<T>> {
@@ -177,7 +177,7 @@ fn sum_of_normals<T: Real>(normals: Option<[Vector3<T>; 2]>) -> Vector3<T> {
 }
 
 /// Returns the normals of the faces at an edge; `None` for a line segment.
-fn adjacent_normals<T: Real>(shape: &Placed<'_, T>, faces: [u8; 2]) -> Option<[Vector3<T>; 2]> {
+fn adjacent_normals<T: Real>(shape: &PlacedPolytope<'_, T>, faces: [u8; 2]) -> Option<[Vector3<T>; 2]> {
     let count = shape.shape.faces.len().min(2 * MAX_VERTICES);
     let [a, b] = faces.map(usize::from);
     (a < count && b < count).then(|| [shape.normal(a), shape.normal(b)])

@@ -1,7 +1,7 @@
 //! Clipping of a face, or of a line segment, by the sides of a face.
 
 use super::axes::FaceAxis;
-use super::{MAX_VERTICES, Placed, Polytope, constant, vertex_position_in_body};
+use super::{MAX_VERTICES, PlacedPolytope, Polytope, constant, vertex_position_in_body};
 use crate::Real;
 use nalgebra::Vector3;
 
@@ -94,8 +94,8 @@ pub(super) fn side_plane<T: Real>(
 /// Writes the points of the other polytope within the sides of a face, and returns their number and the index
 /// of the face that was clipped; `None` for a line segment.
 pub(super) fn write_clipped_points<T: Real>(
-    own: &Placed<'_, T>,
-    other: &Placed<'_, T>,
+    own: &PlacedPolytope<'_, T>,
+    other: &PlacedPolytope<'_, T>,
     axis: &FaceAxis<T>,
     tolerance: T,
     into: &mut [ClippedPoint<T>; MAX_POINTS],
@@ -134,7 +134,7 @@ pub(super) fn write_clipped_points<T: Real>(
 /// Returns the face of a polytope that is opposite to a normal: of the faces with the largest number of
 /// lowest vertices the one whose normal is the most opposed. `None` for a line segment.
 pub(super) fn opposite_face<T: Real>(
-    shape: &Placed<'_, T>,
+    shape: &PlacedPolytope<'_, T>,
     normal: &Vector3<T>,
     tolerance: T,
 ) -> Option<usize> {

@@ -1,6 +1,6 @@
 //! Closest points of two separated polytopes, at vertices and edges.
 
-use super::{Placed, Polytope, edge_as_centered_segment, vector_from_array};
+use super::{PlacedPolytope, Polytope, edge_as_centered_segment, vector_from_array};
 use crate::Real;
 use crate::private::constant;
 use nalgebra::Vector3;
@@ -53,8 +53,8 @@ impl ClosestFeatures {
 /// Returns the positions between −1 and 1 on two edges where their lines are closest; `None` if one of them
 /// is beyond its edge, or if the edges are parallel.
 pub(super) fn edge_parameters<T: Real>(
-    first: &Placed<'_, T>,
-    second: &Placed<'_, T>,
+    first: &PlacedPolytope<'_, T>,
+    second: &PlacedPolytope<'_, T>,
     [i, j]: [usize; 2],
 ) -> Option<[T; 2]> {
     let [(a, own), (b, along)] =
@@ -72,7 +72,7 @@ pub(super) fn edge_parameters<T: Real>(
 
 /// Returns the midpoint of an edge, and half of the vector along it.
 fn edge_midpoint_and_half_vector<T: Real>(
-    shape: &Placed<'_, T>,
+    shape: &PlacedPolytope<'_, T>,
     edge: usize,
 ) -> Option<(Vector3<T>, Vector3<T>)> {
     let edge = shape.shape.edges.get(edge)?;
@@ -82,8 +82,8 @@ fn edge_midpoint_and_half_vector<T: Real>(
 
 /// Returns the closest vertex and edge of two polytopes. Two closest vertices are ends of an edge.
 pub(super) fn closest_features<T: Real>(
-    first: &Placed<'_, T>,
-    second: &Placed<'_, T>,
+    first: &PlacedPolytope<'_, T>,
+    second: &PlacedPolytope<'_, T>,
     is_bounded: bool,
 ) -> ClosestFeatures {
     let mut best = (None::<T>, ClosestFeatures([VertexOrEdge::Vertex(0); 2]));

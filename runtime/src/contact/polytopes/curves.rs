@@ -3,7 +3,7 @@
 //! A curve is described at one of its points by position, unit tangent and curvature vector. Newton's method
 //! moves both points until their connection is perpendicular to both tangents.
 
-use super::{Placed, constant};
+use super::{PlacedPolytope, constant};
 use crate::Real;
 use nalgebra::Vector3;
 
@@ -38,7 +38,7 @@ impl<T: Real> Curve<T> {
     }
 
     /// Returns the circle around the axis of a cylinder through a point of its side or rim.
-    pub(super) fn circle(shape: &Placed<'_, T>, point: Vector3<T>) -> Self {
+    pub(super) fn circle(shape: &PlacedPolytope<'_, T>, point: Vector3<T>) -> Self {
         let arm = shape.offset_from_cylinder_axis(&point);
         let square = arm.norm_squared();
         let tangent = shape.direction(0).cross(&arm) / square.sqrt();

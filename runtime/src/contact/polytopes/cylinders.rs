@@ -23,7 +23,7 @@ use super::axes::{FaceAxis, SeparationBounds, best_face_axis};
 use super::clip::opposite_face;
 use super::curves::{ClosestCurves, Curve};
 use super::search::{climb_to_separation_maximum, separation_along_normal};
-use super::{Placed, TIE_TOLERANCE, components, constant};
+use super::{PlacedPolytope, TIE_TOLERANCE, components, constant};
 use crate::Real;
 use nalgebra::Vector3;
 
@@ -132,8 +132,8 @@ struct PointsOppositeFace<T> {
 
 /// Writes the features of a pair with a cylinder. `height` decides between faces of equal separation.
 pub(super) fn write_features<T: Real>(
-    first: &Placed<'_, T>,
-    second: &Placed<'_, T>,
+    first: &PlacedPolytope<'_, T>,
+    second: &PlacedPolytope<'_, T>,
     height: T,
     into: &mut [T],
 ) {
@@ -178,7 +178,7 @@ pub(super) fn write_features<T: Real>(
 /// Writes the face, the points on curves and the points fixed in the body opposite to the face. Points that
 /// are too many are omitted evenly around the face.
 fn write_selected_features<T: Real>(
-    (first, second): (&Placed<'_, T>, &Placed<'_, T>),
+    (first, second): (&PlacedPolytope<'_, T>, &PlacedPolytope<'_, T>),
     face: &FaceAxis<T>,
     least: T,
     mut selected: SelectedPoints<T>,
@@ -223,7 +223,7 @@ fn write_selected_features<T: Real>(
 
 /// Returns the corners of a face in counter-clockwise order about its normal; points of the rim for the end
 /// of a cylinder.
-fn corners<T: Real>(shape: &Placed<'_, T>, face: usize) -> Points<T> {
+fn corners<T: Real>(shape: &PlacedPolytope<'_, T>, face: usize) -> Points<T> {
     let mut points = Points::new();
     if shape.shape.radius <= 0.0 {
         let corners = shape.shape.faces.get(face).map_or(&[][..], |face| face.corners);
@@ -249,7 +249,12 @@ fn perpendicular<T: Real>(axis: &Vector3<T>) -> Vector3<T> {
 }
 
 /// Whether a point is above a face: within its sides, up to a tolerance.
-fn is_above_face<T: Real>(shape: &Placed<'_, T>, face: usize, place: &Vector3<T>, tolerance: T) -> bool {
+fn is_above_face<T: Real>(
+    shape: &PlacedPolytope<'_, T>,
+    face: usize,
+    place: &Vector3<T>,
+    tolerance: T,
+) -> bool {
     let normal = shape.normal(face);
     if shape.shape.radius > 0.0 {
         let arm = place - shape.vertex(face as u8);
@@ -272,8 +277,8 @@ fn side_planes<T: Real>(corners: &Points<T>, normal: &Vector3<T>) -> impl Iterat
 
 /// Returns the points of a body that are opposite to a face and above it.
 fn points_opposite_to_face<T: Real>(
-    own: &Placed<'_, T>,
-    other: &Placed<'_, T>,
+    own: &PlacedPolytope<'_, T>,
+    other: &PlacedPolytope<'_, T>,
     face: usize,
     tolerance: T,
 ) -> PointsOppositeFace<T> {
@@ -349,7 +354,7 @@ struct SegmentWithEnds<T> {
 impl<T: Real> SegmentWithEnds<T> {
     /// Returns the axis of a cylinder with both rims, which are evaluated near their highest points along a
     /// direction.
-    fn cylinder_axis_and_rims(shape: &Placed<'_, T>, along: &Vector3<T>) -> Self {
+    fn cylinder_axis_and_rims(shape: &PlacedPolytope<'_, T>, along: &Vector3<T>) -> Self {
         let [start, end] = [shape.vertex(0), shape.vertex(1)];
         let axis = shape.direction(0);
         let across = along - axis * axis.dot(along);
@@ -363,7 +368,7 @@ impl<T: Real> SegmentWithEnds<T> {
     }
 
     /// Returns an edge of a hull with both vertices.
-    fn edge(shape: &Placed<'_, T>, edge: usize) -> Option<Self> {
+    fn edge(shape: &PlacedPolytope<'_, T>, edge: usize) -> Option<Self> {
         let [start, end] = shape.shape.edges.get(edge)?.ends.map(|k| shape.vertex(k));
         let half = constant::<T>(0.5);
         let line = Curve::line((start + end) * half, shape.direction(edge), T::zero());
@@ -387,15 +392,15 @@ type SelectedCurves<T> = (ClosestCurves<T>, [Option<ClosestCurves<T>>; 2]);
 
 /// Returns the curves on which two bodies are closest.
 fn closest_curves<T: Real>(
-    first: &Placed<'_, T>,
-    second: &Placed<'_, T>,
+    first: &PlacedPolytope<'_, T>,
+    second: &PlacedPolytope<'_, T>,
     face: &FaceAxis<T>,
     size: T,
 ) -> Option<SelectedCurves<T>> {
     let of_face = if face.is_second { second.normal(face.face) } else { -first.normal(face.face) };
     let between = first.center() - second.center();
     let overlaps = face.distance < T::zero();
-    let center_vector_across_axis = |shape: &Placed<'_, T>| {
+    let center_vector_across_axis = |shape: &PlacedPolytope<'_, T>| {
         let axis = shape.direction(0);
         between - axis * axis.dot(&between)
     };
@@ -437,7 +442,7 @@ fn closest_curves<T: Real>(
 /// Calls a function with the axis of a cylinder, or with each edge of a hull that ends at one of the highest
 /// vertices along a direction.
 fn for_each_segment<T: Real>(
-    shape: &Placed<'_, T>,
+    shape: &PlacedPolytope<'_, T>,
     along: &Vector3<T>,
     size: T,
     f: &mut dyn FnMut(&SegmentWithEnds<T>),
@@ -456,7 +461,7 @@ fn for_each_segment<T: Real>(
 /// Returns the closest pair of a segment or end with a segment or end. If the segments are aligned, the pairs
 /// at both ends of their common part are added.
 fn closest_of_segments<T: Real>(
-    bodies: (&Placed<'_, T>, &Placed<'_, T>),
+    bodies: (&PlacedPolytope<'_, T>, &PlacedPolytope<'_, T>),
     (a, b): (&SegmentWithEnds<T>, &SegmentWithEnds<T>),
     normal: &Vector3<T>,
     size: T,

@@ -6,7 +6,7 @@
 //! direction of their closest points has at least the same separation (a proximal point method); repetitions
 //! lead to a maximum.
 
-use super::{Placed, constant};
+use super::{PlacedPolytope, constant};
 use crate::Real;
 use nalgebra::Vector3;
 
@@ -23,8 +23,8 @@ const ACCURACY: f64 = 1e-13;
 
 /// Returns the separation of two bodies along a unit vector towards the first.
 pub(super) fn separation_along_normal<T: Real>(
-    first: &Placed<'_, T>,
-    second: &Placed<'_, T>,
+    first: &PlacedPolytope<'_, T>,
+    second: &PlacedPolytope<'_, T>,
     normal: &Vector3<T>,
 ) -> T {
     normal.dot(&(first.support(&-normal) - second.support(normal)))
@@ -33,8 +33,8 @@ pub(super) fn separation_along_normal<T: Real>(
 /// Returns a direction with a local maximum of the separation, and the separation. Of separated bodies it is
 /// the global maximum.
 pub(super) fn climb_to_separation_maximum<T: Real>(
-    first: &Placed<'_, T>,
-    second: &Placed<'_, T>,
+    first: &PlacedPolytope<'_, T>,
+    second: &PlacedPolytope<'_, T>,
     start: Vector3<T>,
     size: T,
 ) -> (T, Vector3<T>) {
@@ -67,8 +67,8 @@ pub(super) fn climb_to_separation_maximum<T: Real>(
 
 /// Returns the vector from the second body to the first, displaced by `shift`, between their closest points.
 fn shortest_connection<T: Real>(
-    first: &Placed<'_, T>,
-    second: &Placed<'_, T>,
+    first: &PlacedPolytope<'_, T>,
+    second: &PlacedPolytope<'_, T>,
     shift: &Vector3<T>,
 ) -> Vector3<T> {
     let mut simplex = Simplex { points: [Vector3::zeros(); 4], count: 0 };

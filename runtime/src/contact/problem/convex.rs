@@ -39,8 +39,9 @@ const REGULARISATIONS: [f64; 4] = [1e-2, 0.3, 1e-4, 1e-8];
 /// Violations of Coulomb's law, relative to the largest contact velocity, below which Newton's method for the
 /// natural map is tried, once for each.
 const NEAR: [f64; 2] = [2e-2, 1e-4];
-/// Violation that counts as zero, likewise, and violation at which a slow sequence ends.
+/// Violation of Coulomb's law, relative to the largest contact velocity, that counts as zero.
 const ENOUGH: f64 = 1e-12;
+/// Violation of Coulomb's law, relative to the largest contact velocity, at which a slow sequence ends.
 const GOOD: f64 = 1e-10;
 /// Kinds of friction of a contact: slip, spin and rolling.
 pub(super) const PARTS: usize = 3;

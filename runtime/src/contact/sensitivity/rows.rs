@@ -67,7 +67,7 @@ impl<T: Real, const CR: usize, const NV: usize, const NU: usize> ContactRowDeriv
         }
     }
 
-    /// Adds the velocity change that these impulses cause.
+    /// Adds the velocity change due to the contact impulses, with its derivatives.
     pub(super) fn add_velocity_change(
         &self,
         responses: &SMatrix<T, NV, CR>,

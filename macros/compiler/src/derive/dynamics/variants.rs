@@ -10,13 +10,13 @@ use crate::mechanics::passive::passive_forces;
 use crate::mechanics::speeds::{ResultKind, SpeedTransformation};
 use crate::mechanics::{self, aba, added_mass, constraints, crba, friction, ldl, massless, rnea};
 use crate::mechanism::Model;
-use crate::passes::{Passes, Variant};
+use crate::passes::{ModelVariant, PassSelection};
 use crate::vectorise::{self, VectorisedMechanism};
 use std::rc::Rc;
 
 /// Variants of a model that have the same link frames.
-pub struct Variants<'g> {
-    all: Vec<Variant<'g>>,
+pub struct ModelVariants<'g> {
+    all: Vec<ModelVariant<'g>>,
     pub joints: Vec<Joint<'g>>,
     specialisation: ParameterSpecialisation,
     /// Generalized speeds of the results; `None` if the results are in joint velocities.
@@ -37,13 +37,13 @@ pub struct CheapestBias {
     pub simd: Option<(usize, Program)>,
 }
 
-impl<'g> Variants<'g> {
+impl<'g> ModelVariants<'g> {
     pub fn new(
-        all: Vec<Variant<'g>>,
-        passes: Passes,
+        all: Vec<ModelVariant<'g>>,
+        passes: PassSelection,
         specialisation: ParameterSpecialisation,
         speeds: Option<Rc<SpeedTransformation<'g>>>,
-    ) -> Variants<'g> {
+    ) -> ModelVariants<'g> {
         // All variants have the same joints.
         let joints = match all.as_slice() {
             [any, ..] => any.joints.clone(),
@@ -57,7 +57,7 @@ impl<'g> Variants<'g> {
             }
             _ => Vec::new(),
         };
-        let vectorised_mechanism_of_variant = |variant: &Variant<'g>| {
+        let vectorised_mechanism_of_variant = |variant: &ModelVariant<'g>| {
             let passive_forces_of_variant = || passive_forces(&variant.model, true);
             Some((
                 VectorisedMechanism::new(&variant.model, &joints, &groups, passive_forces_of_variant)?,
@@ -65,7 +65,7 @@ impl<'g> Variants<'g> {
             ))
         };
         let limbs = all.iter().filter_map(vectorised_mechanism_of_variant).collect();
-        Variants { all, joints, specialisation, speeds, limbs, bias: CheapestBias::default() }
+        ModelVariants { all, joints, specialisation, speeds, limbs, bias: CheapestBias::default() }
     }
 
     pub fn store_cheapest_bias_program(&mut self) {
@@ -222,7 +222,7 @@ fn multiplier_acceleration_column_count(model: &Model<'_>) -> usize {
     if model.has_unpruned_redundancy() { model.constraints.len() } else { 0 }
 }
 
-impl<'g> Variants<'g> {
+impl<'g> ModelVariants<'g> {
     /// Returns accelerations and multipliers under the forces `tau`.
     pub fn constrained_dynamics(&self) -> Program {
         let [variant, ..] = self.all.as_slice() else { return Program::default() };

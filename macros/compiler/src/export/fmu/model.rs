@@ -16,7 +16,8 @@ struct HeaderWriter<'a> {
     text: String,
 }
 
-/// Returns the header, with the placeholder `@TOKEN@` for the instantiation token.
+/// Returns the C header `lw_model.h` of a mechanism, with the placeholder `@TOKEN@` for the instantiation
+/// token.
 pub fn model_header(
     model: &Model<'_>,
     output: &DerivationOutput,

@@ -2,7 +2,7 @@
 
 use super::body::WORLD;
 use super::reader::MjcfReader;
-use super::touch::{ContactGeometry, friction_of_dimension, read_contact_dimension};
+use super::touch::{ContactGeometry, friction_of_condim, read_contact_dimension};
 use crate::diag::Place;
 use crate::import::contact_limit::list_first_names;
 use crate::import::context::{Cx, quote_word};
@@ -406,7 +406,7 @@ fn read_pair_friction(element: &super::defaults::ElementWithDefaults<'_>, cx: &m
             ))
         });
     }
-    friction_of_dimension(dimension, [first, torsional, around_first])
+    friction_of_condim(dimension, [first, torsional, around_first])
 }
 
 /// Removes the most distant candidates of each kind beyond the maximum number of contact points, because each

@@ -97,7 +97,7 @@ impl MjcfContactParameters {
                 (self.dimensions.max(other.dimensions), larger)
             }
         };
-        friction_of_dimension(dimensions, friction)
+        friction_of_condim(dimensions, friction)
     }
 }
 
@@ -113,7 +113,7 @@ pub(super) fn read_contact_dimension(element: &ElementWithDefaults<'_>, cx: &mut
 }
 
 /// Returns the coefficients of sliding, torsional and rolling friction that a contact of this dimension has.
-pub(super) fn friction_of_dimension(dimension: f64, friction: [f64; 3]) -> [f64; 3] {
+pub(super) fn friction_of_condim(dimension: f64, friction: [f64; 3]) -> [f64; 3] {
     let least = [3.0, 4.0, 6.0];
     std::array::from_fn(|k| if dimension < least[k] { 0.0 } else { friction[k] })
 }

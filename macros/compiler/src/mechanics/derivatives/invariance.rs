@@ -118,7 +118,7 @@ impl FreeBase {
 
 /// All terms of the equations of motion except the inertial forces of the links.
 struct TermsWithoutInertialForces<'g> {
-    /// Derivatives of these terms with respect to configuration and velocity.
+    /// Derivatives of the terms with respect to configuration and velocity.
     forces: ForceDerivatives<'g>,
     /// For each velocity: whether the terms depend on the acceleration of that velocity.
     inertial: Vec<bool>,

@@ -20,7 +20,7 @@ pub struct SubtreeMassAndWrench<'g> {
     pub wrench: SpatialVector<'g>,
     /// Multiple of `p`; the factor is the argument `multiple` of `subtrees`.
     momentum: Vec3<'g>,
-    /// Multiple of `K`, with the same factor as that of `p`.
+    /// Multiple of `K`; the factor is the argument `multiple` of `subtrees`.
     moments: Mat3<'g>,
 }
 

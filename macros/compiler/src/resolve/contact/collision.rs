@@ -4,7 +4,7 @@ use super::surface::{ConvexHull, Surface, SurfaceForm};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::Vec3;
 use crate::hull::{Hull, MAX_VERTICES};
-use crate::resolve::scope::{Placed, Scope};
+use crate::resolve::scope::{PlacedElement, Scope};
 use crate::syntax::contact::collision_shape_indices;
 use crate::syntax::{self, CollisionShape, ExprKind, Name, Shape};
 
@@ -49,7 +49,7 @@ pub fn read_collisions<'g>(
 fn surface_of_collision<'g>(
     scope: &Scope<'_, 'g>,
     part: &CollisionShape,
-    frame: Option<&Placed<'g>>,
+    frame: Option<&PlacedElement<'g>>,
     place: &Place,
     cx: &mut Diagnostics,
 ) -> Option<Surface<'g>> {
@@ -75,5 +75,5 @@ fn surface_of_collision<'g>(
             SurfaceForm::Hull(ConvexHull { shape: Hull::new(&part.hull, MAX_VERTICES).ok(), vertices })
         }
     };
-    Some(Surface { frame: Placed { pose, ..frame }, form })
+    Some(Surface { frame: PlacedElement { pose, ..frame }, form })
 }

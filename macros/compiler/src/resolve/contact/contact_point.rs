@@ -11,7 +11,7 @@ use crate::expr::Vec3;
 use crate::expr::diff::DirectionalDerivative;
 use crate::kinematics::symbols_in;
 use crate::mechanism::{Coordinate, Quantity};
-use crate::resolve::scope::{AllowedQuantities, Context, Placed, Scope};
+use crate::resolve::scope::{AllowedQuantities, Context, PlacedElement, Scope};
 use crate::syntax;
 
 impl<'g> SurfacePair<'_, 'g> {
@@ -39,7 +39,7 @@ impl<'g> SurfacePair<'_, 'g> {
 /// depend.
 pub(super) fn resolve_parametric_surface<'g>(
     scope: &Scope<'_, 'g>,
-    frame: &Placed<'g>,
+    frame: &PlacedElement<'g>,
     [u, w, point]: [&syntax::Expr; 3],
     cx: &mut Diagnostics,
 ) -> Option<ParametricSurface<'g>> {

@@ -23,11 +23,11 @@ struct CurvePoint<'g> {
 impl<'g> CurvePoint<'g> {
     /// Returns a curve from its features: point, tangent and curvature vector.
     fn from_features(frame: &PolytopeFrame<'g>, values: &[Expr<'g>]) -> CurvePoint<'g> {
-        let vector_at_index = |first: usize| Vec3(std::array::from_fn(|k| values[first + k]));
+        let vector_from_entry = |first: usize| Vec3(std::array::from_fn(|k| values[first + k]));
         CurvePoint {
-            point: frame.position_in_common_axes(vector_at_index(0)),
-            tangent: frame.direction_in_common_axes(vector_at_index(3)),
-            curvature: frame.direction_in_common_axes(vector_at_index(6)),
+            point: frame.position_in_common_axes(vector_from_entry(0)),
+            tangent: frame.direction_in_common_axes(vector_from_entry(3)),
+            curvature: frame.direction_in_common_axes(vector_from_entry(6)),
         }
     }
 
@@ -79,7 +79,7 @@ impl<'g> PlacedPair<'g> {
         let is_second = values[0];
         let own = PolytopeFrame::select_frame_by_indicator(is_second, &self.second, &self.first);
         let other = PolytopeFrame::select_frame_by_indicator(is_second, &self.first, &self.second);
-        let outward = own.direction_in_common_axes(self.features.vector_at_index(2));
+        let outward = own.direction_in_common_axes(self.features.vector_from_entry(2));
         let face = FaceOfPair {
             is_second,
             origin: own.origin + outward * values[5],

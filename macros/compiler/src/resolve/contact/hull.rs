@@ -11,7 +11,7 @@ use crate::diag::Diagnostics;
 use crate::expr::{Expr, Extreme, Vec3};
 use crate::hull::{Hull, HullError, MAX_VERTICES};
 use crate::mechanism::Rule;
-use crate::resolve::scope::{AllowedQuantities, Context, Placed, Scope};
+use crate::resolve::scope::{AllowedQuantities, Context, PlacedElement, Scope};
 use crate::syntax::{self, ExprKind};
 
 /// Distance from a face below which a point is treated as part of it, relative to the size of the hull.
@@ -24,7 +24,7 @@ const EXAMPLE: &str = "write at least four points that are not in one plane, as 
 /// Parses the hull of a list of points; `None` after an error.
 pub(super) fn read_hull<'g>(
     scope: &Scope<'_, 'g>,
-    frame: Option<Placed<'g>>,
+    frame: Option<PlacedElement<'g>>,
     points: &syntax::Expr,
     cx: &mut Diagnostics,
 ) -> Option<Surface<'g>> {

@@ -70,7 +70,7 @@ pub(super) struct PairFeatures<'g> {
 }
 
 impl<'g> PairFeatures<'g> {
-    pub(super) fn vector_at_index(&self, first: usize) -> Vec3<'g> {
+    pub(super) fn vector_from_entry(&self, first: usize) -> Vec3<'g> {
         Vec3(std::array::from_fn(|k| self.values[first + k]))
     }
 }
@@ -234,7 +234,7 @@ impl<'g> PlacedPair<'g> {
         let (is_second, zero) = (self.features.values[0], self.unused.zero());
         let own = PolytopeFrame::select_frame_by_indicator(is_second, &self.second, &self.first);
         let other = PolytopeFrame::select_frame_by_indicator(is_second, &self.first, &self.second);
-        let outward = own.direction_in_common_axes(self.features.vector_at_index(2));
+        let outward = own.direction_in_common_axes(self.features.vector_from_entry(2));
         // Normals point towards the first surface.
         let normal = outward * (is_second * 2.0 - zero.num(1.0));
         let (first, second) = tangents_of(normal);
@@ -266,12 +266,12 @@ impl<'g> PlacedPair<'g> {
         let (side, is_closest) = (values[6], values[7]);
         let is_crossing = side.square();
         let (start, own) = (
-            self.first.position_in_common_axes(self.features.vector_at_index(8)),
-            self.first.direction_in_common_axes(self.features.vector_at_index(11)),
+            self.first.position_in_common_axes(self.features.vector_from_entry(8)),
+            self.first.direction_in_common_axes(self.features.vector_from_entry(11)),
         );
         let (end, along) = (
-            self.second.position_in_common_axes(self.features.vector_at_index(15)),
-            self.second.direction_in_common_axes(self.features.vector_at_index(18)),
+            self.second.position_in_common_axes(self.features.vector_from_entry(15)),
+            self.second.direction_in_common_axes(self.features.vector_from_entry(18)),
         );
         let (near, far) = closest_positions_on_segments(start - end, (own, values[14]), (along, values[21]));
         let (start, end) = (start + own * near, end + along * far);
@@ -295,13 +295,15 @@ impl<'g> PlacedPair<'g> {
 /// Returns the position of a point on a face from its features: `own` is the frame of the polytope with the
 /// face, `other` that of the other polytope.
 fn point_of_face<'g>(values: &[Expr<'g>], own: &PolytopeFrame<'g>, other: &PolytopeFrame<'g>) -> Vec3<'g> {
-    let vector_at_index = |first: usize| Vec3(std::array::from_fn(|k| values[first + k]));
+    let vector_from_entry = |first: usize| Vec3(std::array::from_fn(|k| values[first + k]));
     let (is_cut, is_own) = (values[1], values[2]);
     let line = PolytopeFrame::select_frame_by_indicator(is_own, own, other);
     let plane = PolytopeFrame::select_frame_by_indicator(is_own, other, own);
-    let (start, along) =
-        (line.position_in_common_axes(vector_at_index(3)), line.direction_in_common_axes(vector_at_index(6)));
-    let normal = plane.direction_in_common_axes(vector_at_index(9));
+    let (start, along) = (
+        line.position_in_common_axes(vector_from_entry(3)),
+        line.direction_in_common_axes(vector_from_entry(6)),
+    );
+    let normal = plane.direction_in_common_axes(vector_from_entry(9));
     let height = normal.dot(start - plane.origin) - values[12];
     let slope = normal.dot(along) + (is_cut.num(1.0) - is_cut);
     start - along * (height * is_cut / slope)

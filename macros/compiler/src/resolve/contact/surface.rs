@@ -4,7 +4,7 @@ use super::terrain::Terrain;
 use crate::expr::{Expr, Vec3};
 use crate::hull::Hull;
 use crate::language::SurfaceId;
-use crate::resolve::scope::Placed;
+use crate::resolve::scope::PlacedElement;
 
 /// Form of a surface; vectors and lengths in body axes.
 #[derive(Clone)]
@@ -67,7 +67,7 @@ pub struct ConvexHull<'g> {
 #[derive(Clone)]
 pub struct Surface<'g> {
     /// Frame at the centre, at the apex or at a point of the surface.
-    pub frame: Placed<'g>,
+    pub frame: PlacedElement<'g>,
     /// Form of the surface with its dimensions.
     pub form: SurfaceForm<'g>,
 }

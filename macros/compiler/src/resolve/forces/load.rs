@@ -7,7 +7,7 @@ use crate::expr::{Expr as Value, Function, Vec3};
 use crate::kinematics::symbols_in;
 use crate::mechanism::{AccelerationForce, InputEffect, Load, Pose, Quantity, SumOfLinkVectors};
 use crate::resolve::element_forces::ElementForces;
-use crate::resolve::scope::{AllowedQuantities, Context, Placed, PlacedElementKind, Scope};
+use crate::resolve::scope::{AllowedQuantities, Context, PlacedElement, PlacedElementKind, Scope};
 use crate::resolve::target::{ResolvedTarget, resolve_target};
 use crate::resolve::terms::{coordinate_stretch, distance_between_points};
 use crate::syntax::{Action, Expr, ExprKind, Key, Target};
@@ -230,7 +230,7 @@ fn point_input<'g>(
     scope: &Scope<'_, 'g>,
     action: &Action,
     on: &Expr,
-    place: &Placed<'g>,
+    place: &PlacedElement<'g>,
     direction: Option<&Expr>,
     torque: bool,
     cx: &mut Diagnostics,
@@ -271,7 +271,7 @@ fn is_moving_vector(v: Vec3<'_>) -> bool {
 }
 
 /// Whether a torque can act on an element; reports particles and points, which have no rotation.
-fn can_torque_act_on_element(on: &Expr, place: &Placed<'_>, cx: &mut Diagnostics) -> bool {
+fn can_torque_act_on_element(on: &Expr, place: &PlacedElement<'_>, cx: &mut Diagnostics) -> bool {
     let ExprKind::Name(name) = &on.kind else { return true };
     if place.kind == PlacedElementKind::Point {
         cx.report_error(on.place.clone(), format!("`{name}` is a point, on which a torque has no effect"))

@@ -37,7 +37,7 @@ pub enum InferredUnit {
 
 impl InferredUnit {
     /// Returns a quantity whose unit follows from the motion.
-    pub fn motion_quantity_of_dimension(dimension: Dimension) -> InferredUnit {
+    pub fn known_from_motion(dimension: Dimension) -> InferredUnit {
         InferredUnit::Quantity { dimension, anchor: UnitSource::Motion }
     }
 
@@ -53,7 +53,7 @@ impl InferredUnit {
     pub fn unit_of_power(self, exponent: Option<Ratio>) -> InferredUnit {
         match self {
             InferredUnit::Quantity { dimension, .. } if dimension.is_plain() => {
-                InferredUnit::motion_quantity_of_dimension(dimension)
+                InferredUnit::known_from_motion(dimension)
             }
             InferredUnit::Quantity { dimension, anchor } => {
                 match exponent.and_then(|e| dimension.dimension_of_power(e)) {

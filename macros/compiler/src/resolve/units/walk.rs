@@ -27,7 +27,7 @@ impl<'a> Inference<'a> {
 
     fn inferred_unit_of_name(&self, name: &str) -> InferredUnit {
         if let Some((_, dimension)) = self.locals.iter().find(|(local, _)| *local == name) {
-            return InferredUnit::motion_quantity_of_dimension(dimension.clone());
+            return InferredUnit::known_from_motion(dimension.clone());
         }
         match (Builtin::find_by_name(name), self.names.get(name)) {
             (_, Some(UnitMeaningOfName::Named(v, anchor))) => {
@@ -35,7 +35,7 @@ impl<'a> Inference<'a> {
             }
             (Some(Builtin::Axis(_)), _) => InferredUnit::Direction,
             (Some(Builtin::Pi), _) => InferredUnit::Number(std::f64::consts::PI),
-            (Some(Builtin::Time), _) => InferredUnit::motion_quantity_of_dimension(TIME),
+            (Some(Builtin::Time), _) => InferredUnit::known_from_motion(TIME),
             (_, Some(UnitMeaningOfName::Moving(dimension, anchor))) => {
                 InferredUnit::Quantity { dimension: dimension.clone(), anchor: *anchor }
             }
@@ -48,7 +48,7 @@ impl<'a> Inference<'a> {
         let ExprKind::Name(joint) = &inner.kind else { return InferredUnit::Unknown };
         match self.names.get(&format!("{joint}.{}", member.text)) {
             Some(UnitMeaningOfName::Moving(dimension, _)) => {
-                InferredUnit::motion_quantity_of_dimension(dimension.clone())
+                InferredUnit::known_from_motion(dimension.clone())
             }
             _ => InferredUnit::Direction,
         }
@@ -220,7 +220,7 @@ impl<'a> Inference<'a> {
     ) -> InferredUnit {
         let [first, others @ ..] = arguments else {
             return match rule {
-                UnitRule::Of(dimension) => InferredUnit::motion_quantity_of_dimension(dimension.clone()),
+                UnitRule::Of(dimension) => InferredUnit::known_from_motion(dimension.clone()),
                 _ => InferredUnit::Unknown,
             };
         };
@@ -228,7 +228,7 @@ impl<'a> Inference<'a> {
             UnitRule::Unknown => InferredUnit::Unknown,
             UnitRule::Of(dimension) => {
                 self.infer_dimensions_of_unused_values(arguments);
-                InferredUnit::motion_quantity_of_dimension(dimension.clone())
+                InferredUnit::known_from_motion(dimension.clone())
             }
             UnitRule::Direction => {
                 self.infer_dimensions_of_unused_values(arguments);
@@ -239,7 +239,7 @@ impl<'a> Inference<'a> {
             }
             UnitRule::Quotient => {
                 match self.equate_to_common_unit(arguments, DimensionEqualityReason::Compared(name)) {
-                    InferredUnit::Quantity { .. } => InferredUnit::motion_quantity_of_dimension(PLAIN),
+                    InferredUnit::Quantity { .. } => InferredUnit::known_from_motion(PLAIN),
                     _ => InferredUnit::Number(f64::NAN),
                 }
             }
@@ -256,12 +256,12 @@ impl<'a> Inference<'a> {
                 let factors: Vec<_> =
                     arguments.iter().map(|a| (false, self.inferred_unit_of_expression(a))).collect();
                 match self.inferred_unit_of_factors(&factors) {
-                    InferredUnit::Direction if *scalar => InferredUnit::motion_quantity_of_dimension(PLAIN),
+                    InferredUnit::Direction if *scalar => InferredUnit::known_from_motion(PLAIN),
                     product => product,
                 }
             }
             UnitRule::Magnitude => match self.inferred_unit_of_expression(first) {
-                InferredUnit::Direction => InferredUnit::motion_quantity_of_dimension(PLAIN),
+                InferredUnit::Direction => InferredUnit::known_from_motion(PLAIN),
                 other => other,
             },
             UnitRule::Power => match others {
@@ -272,7 +272,7 @@ impl<'a> Inference<'a> {
                 // The rate of a vector in a frame; the frame's name has no dimension.
                 ExprKind::Binary(BinaryOp::Div, vector, frame, _) if self.is_frame(frame) => {
                     match self.inferred_unit_of_expression(vector) {
-                        InferredUnit::Direction => InferredUnit::motion_quantity_of_dimension(RATE),
+                        InferredUnit::Direction => InferredUnit::known_from_motion(RATE),
                         other => quotient_by_dimension(other, &TIME),
                     }
                 }
@@ -291,14 +291,14 @@ impl<'a> Inference<'a> {
             UnitRule::Places(dimension) => {
                 self.infer_dimensions_of_unused_values(others);
                 self.infer_from_slash_operands(first);
-                InferredUnit::motion_quantity_of_dimension(dimension.clone())
+                InferredUnit::known_from_motion(dimension.clone())
             }
             UnitRule::Moment => {
                 self.infer_from_slash_operands(first);
                 let directions: Vec<InferredUnit> =
                     others.iter().map(|a| self.inferred_unit_of_expression(a)).collect();
                 match directions.iter().all(|direction| matches!(direction, InferredUnit::Direction)) {
-                    true => InferredUnit::motion_quantity_of_dimension(INERTIA),
+                    true => InferredUnit::known_from_motion(INERTIA),
                     // Vectors with a unit would contribute it.
                     false => InferredUnit::Unknown,
                 }
@@ -324,7 +324,7 @@ impl<'a> Inference<'a> {
             }
             UnitRule::OfHeight(dimension) => {
                 self.equate_with_expected_dimension(first, &LENGTH, "m", DimensionEqualityReason::Argument);
-                dimension.clone().map_or(InferredUnit::Unknown, InferredUnit::motion_quantity_of_dimension)
+                dimension.clone().map_or(InferredUnit::Unknown, InferredUnit::known_from_motion)
             }
         }
     }
@@ -372,7 +372,7 @@ impl<'a> Inference<'a> {
             Function::Abs => return self.inferred_unit_of_expression(a),
             Function::Signum => {
                 self.inferred_unit_of_expression(a);
-                return InferredUnit::motion_quantity_of_dimension(PLAIN);
+                return InferredUnit::known_from_motion(PLAIN);
             }
             Function::Sqrt => {
                 return match self.inferred_unit_of_expression(a) {
@@ -386,7 +386,7 @@ impl<'a> Inference<'a> {
         match self.equate_with_expected_dimension(a, &PLAIN, unit, DimensionEqualityReason::Argument) {
             InferredUnit::Number(value) => InferredUnit::Number(f.evaluate_at(value)),
             InferredUnit::Direction => InferredUnit::Unknown,
-            _ => InferredUnit::motion_quantity_of_dimension(PLAIN),
+            _ => InferredUnit::known_from_motion(PLAIN),
         }
     }
 
@@ -399,7 +399,7 @@ impl<'a> Inference<'a> {
             (InferredUnit::Number(value), InferredUnit::Number(n)) => {
                 InferredUnit::Number(libm::pow(value, n))
             }
-            (InferredUnit::Number(_), _) => InferredUnit::motion_quantity_of_dimension(PLAIN),
+            (InferredUnit::Number(_), _) => InferredUnit::known_from_motion(PLAIN),
             (base, InferredUnit::Number(n)) => base.unit_of_power(Ratio::from_value(n)),
             (InferredUnit::Quantity { dimension, anchor }, _) => {
                 let power = Dimension::unknown_dimension(self.system.add_unknown_dimension());
