@@ -52,16 +52,16 @@ impl Model<'_> {
         let at_rest = substitute_symbols_in_all(&rates, &|symbol| {
             velocity_index(symbol).is_some().then(|| self.graph.zero())
         });
-        let mut at_rest = at_rest.into_iter();
+        let mut at_rest = at_rest.as_slice();
         let dependence_of_contact = |contact: &Contact<'_>| {
             let used: Vec<usize> =
                 symbols_in(&contact.rates).into_iter().filter_map(velocity_index).collect();
             let ends = used.iter().min().zip(used.iter().max());
-            let mut own_at_rest = at_rest.by_ref().take(contact.rates.len());
+            let (own_at_rest, others) = at_rest.split_at(contact.rates.len());
+            at_rest = others;
             ContactVelocityDependence {
                 columns: ends.map_or((0, 0), |(first, last)| (*first, last + 1)),
-                // All are taken.
-                drifts: own_at_rest.by_ref().filter(|rate| *rate != self.graph.zero()).count() > 0,
+                drifts: own_at_rest.iter().any(|rate| *rate != self.graph.zero()),
             }
         };
         self.contacts.iter().map(dependence_of_contact).collect()

@@ -8,7 +8,7 @@ use crate::resolve::scope::Scope;
 use crate::resolve::terms::ForceElementCoordinate;
 use crate::syntax::{self, Action, Key};
 
-/// Returns the force of an inerter as `Forces`.
+/// Returns the force of an inerter as `ElementForces`.
 pub fn inerter_force<'g>(
     scope: &Scope<'_, 'g>,
     action: &Action,
