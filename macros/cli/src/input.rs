@@ -98,11 +98,20 @@ impl MechanismInput {
 
     /// Parses the arguments and the struct. Errors are added to `cx`.
     pub fn parse_source(&self, cx: &mut Diagnostics) -> Option<ParsedSource> {
+        self.parse_source_with(parse_source_and_import, cx)
+    }
+
+    /// Parses the arguments and the struct by a function of the compiler. Errors are added to `cx`.
+    fn parse_source_with<T>(
+        &self,
+        parse: impl FnOnce(TokenStream, TokenStream, &Path, &mut Diagnostics) -> Option<T>,
+        cx: &mut Diagnostics,
+    ) -> Option<T> {
         let DeclaredStruct { arguments, item, .. } = &self.declaration;
         if let Some(attribute) = self.declaration.derive_above_attribute_error {
             cx.add_diagnostic(derive_above_attribute_error(attribute));
         }
-        parse_source_and_import(arguments.clone(), item.clone(), &self.folder, cx)
+        parse(arguments.clone(), item.clone(), &self.folder, cx)
     }
 
     /// Prints the compile errors, if there are any.
@@ -132,14 +141,18 @@ impl MechanismInput {
     /// Returns the model of the mechanism, and the mechanism with machine code; otherwise prints the errors.
     pub fn load_mechanism<'g>(&self, graph: &'g Graph) -> Result<LoadedMechanism<'g>, Stop> {
         let cx = &mut Diagnostics::new();
-        let mut source = self.result_without_errors(self.parse_source(cx), cx)?;
+        let (mut source, separate) = self.result_without_errors(
+            self.parse_source_with(linkwork_jit::parse_source_and_separate_contacts, cx),
+            cx,
+        )?;
         linkwork_jit::remove_rust_only_options(&mut source);
         let passes = PassSelection { lanes: false, ..PassSelection::default() };
         let allowed = reject_reproducible_arithmetic(&source, "loaded mechanisms", cx);
         let compiled = allowed.and_then(|()| compile_with_passes(&source, graph, passes, cx));
         let (model, output) = self.result_without_errors(compiled, cx)?;
         let equations = output.equations.mathml.clone();
-        let robot = linkwork_jit::compiled(&source, &model, output);
+        let robot = linkwork_jit::compiled(&source, &separate, &model, output)
+            .map_err(|error| Stop::Failure(error.to_string()))?;
         Ok(LoadedMechanism { source, model, robot, equations })
     }
 

@@ -3,6 +3,7 @@
 use crate::catalogue::{self, ConstraintFacts, ContactCounts, Facts};
 use crate::diag::Diagnostics;
 use crate::emit::{self, Constraints, GeneratedCode, Interface, emit_error_stubs};
+use crate::syntax::contact::MAX_CONTACT_POINTS;
 use crate::syntax::{self, Mechanism};
 use crate::{derive, import, mechanism, resolve};
 use proc_macro2::TokenStream;
@@ -26,6 +27,19 @@ pub fn parse_source_and_import(
     folder: &Path,
     cx: &mut Diagnostics,
 ) -> Option<ParsedSource> {
+    parse_source_with_contact_limit(arguments, item, folder, MAX_CONTACT_POINTS, cx)
+}
+
+/// Parses the struct and imports its file with at most `limit` contact points, see
+/// [`separate_contacts`](ParsedSource::separate_contacts). Returns `None` if the item is not a struct that can
+/// be analysed further.
+pub fn parse_source_with_contact_limit(
+    arguments: TokenStream,
+    item: TokenStream,
+    folder: &Path,
+    limit: usize,
+    cx: &mut Diagnostics,
+) -> Option<ParsedSource> {
     let mut mechanism = syntax::parse_mechanism(arguments, item, cx)?;
     let (mut files, before) = (Vec::new(), cx.len());
     mechanism.description.drawing = mechanism.requests.drawing;
@@ -33,6 +47,7 @@ pub fn parse_source_and_import(
         options.collisions = options.contacts != syntax::ContactOption::Ignore
             || mechanism.description.contacts.iter().any(syntax::Contact::uses_file_collisions);
         options.visuals = mechanism.requests.drawing;
+        options.contact_points = limit;
         let path = folder.join(&options.path.text);
         let text = import::read_imported_file(&path, options, cx);
         files.extend(text.is_some().then_some(path));
@@ -41,7 +56,7 @@ pub fn parse_source_and_import(
             merge_imported_file(&mut mechanism, imported, cx);
         }
     }
-    files.extend(import::read_hulls(&mut mechanism.description, folder, cx));
+    files.extend(import::read_hulls(&mut mechanism.description, folder, limit, cx));
     Some(ParsedSource { mechanism, files, imported: cx.len() == before })
 }
 

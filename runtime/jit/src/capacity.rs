@@ -25,10 +25,12 @@ pub(crate) trait ContactVisitor {
 
 /// Maximum number of coordinates, velocities, inputs and constraints of a robot.
 const LARGEST: usize = 256;
-/// Maximum number of unilateral contacts of a robot.
+/// Maximum number of unilateral contacts that take part in a step.
 const MOST_CONTACTS: usize = 128;
+/// Maximum number of unilateral contacts that take part in a step of a robot with separate contacts.
+const MOST_SEPARATE_CONTACTS: usize = 384;
 /// Number of coordinates, velocities, inputs and constraints beyond which matrices have [`LARGEST`] rows.
-const MEDIUM: usize = 64;
+const MEDIUM: usize = 72;
 
 /// Stack size of the thread on which robots of at most [`MEDIUM`] coordinates are simulated, bytes.
 const STACK: usize = 64 << 20;
@@ -99,7 +101,11 @@ impl Robot {
     where
         V: ContactVisitor<Output: Send> + Send,
     {
-        let (count, rates) = (self.shared.contacts.len(), self.shared.contact_rates);
+        // Of separate contacts only those that are near each other need entries.
+        let (count, rates) = match self.shared.separate.is_empty() {
+            true => (self.shared.contacts.len(), self.shared.contact_rates),
+            false => (MOST_CONTACTS, 3 * MOST_CONTACTS),
+        };
         let is_few = count <= 8 && rates <= 24;
         match self.largest_dimension() {
             _ if count > MOST_CONTACTS => Err(self.capacity_error("contacts", count, MOST_CONTACTS)),
@@ -111,8 +117,14 @@ impl Robot {
                     .visit(&PaddedContacts::<MEDIUM, MEDIUM, MEDIUM, MOST_CONTACTS, 384, _>::new(self)?))
             }
             count if count <= LARGEST => run_with_stack_size(LARGE_STACK, || {
-                Ok(visitor
-                    .visit(&PaddedContacts::<LARGEST, LARGEST, LARGEST, MOST_CONTACTS, 384, _>::new(self)?))
+                Ok(visitor.visit(&PaddedContacts::<
+                    LARGEST,
+                    LARGEST,
+                    LARGEST,
+                    MOST_SEPARATE_CONTACTS,
+                    { 3 * MOST_SEPARATE_CONTACTS },
+                    _,
+                >::new(self)?))
             }),
             count => {
                 Err(self.capacity_error("coordinates, velocities, inputs or constraints", count, LARGEST))

@@ -143,6 +143,23 @@ impl Frames {
         path
     }
 
+    /// Returns the moving link that carries a frame; `None` for the ground.
+    pub fn link_of_frame(&self, frame: usize) -> Option<usize> {
+        self.frames[frame].link
+    }
+
+    /// Returns the indices of the velocities that move a frame, in increasing order.
+    pub fn velocities_of_frame(&self, frame: usize) -> Vec<usize> {
+        if self.speeds.is_some() {
+            return (0..self.nv).collect();
+        }
+        let links = self.links_to_frame(frame).into_iter().map(|link| &self.links[link]);
+        let mut velocities: Vec<usize> = links.flat_map(|link| link.velocities.iter().copied()).collect();
+        velocities.sort_unstable();
+        velocities.dedup();
+        velocities
+    }
+
     /// Returns the program that computes the placements of all frames: for each frame a rotation matrix row
     /// by row, and a position.
     pub fn frame_placements_program(&self) -> Program {

@@ -30,6 +30,7 @@ mod polytopes;
 mod robot;
 mod roll_out;
 mod routine;
+mod separate;
 mod shared;
 mod simulate;
 mod steps;
@@ -47,7 +48,7 @@ pub use independent::IndependentMotion;
 pub use linkwork::simulate::Overlaps;
 pub use load::{Loader, declare, load};
 #[doc(hidden)]
-pub use load::{compiled, remove_rust_only_options};
+pub use load::{compiled, parse_source_and_separate_contacts, remove_rust_only_options};
 pub use padded::{Padded, PaddedContacts};
 pub use robot::{Function, Limit, Robot};
 pub use shared::Quantity;

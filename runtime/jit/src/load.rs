@@ -10,6 +10,7 @@ use crate::internal::INTERNAL;
 use crate::methods::METHODS;
 use crate::polytopes::Polytopes;
 use crate::robot::Robot;
+use crate::separate::SeparateContacts;
 use crate::shared::{
     Constraints, Contact, FirstOrderState, ParameterRequirement, Quantity, SharedMechanism, Sizes,
 };
@@ -20,8 +21,9 @@ use linkwork_compiler::mechanism::{self, Model};
 use linkwork_compiler::passes::PassSelection;
 use linkwork_compiler::syntax::{EquationsOption, RATE_OF_STATE};
 use linkwork_compiler::{
-    DeclaredStruct, ParsedSource, compile_with_passes, derive_above_attribute_error, import,
-    mechanism_declarations, parse_source_and_import, reject_reproducible_arithmetic,
+    DeclaredStruct, ParsedSource, SeparateContact, compile_with_passes, derive_above_attribute_error, import,
+    mechanism_declarations, parse_source_and_import, parse_source_with_contact_limit,
+    reject_reproducible_arithmetic,
 };
 use proc_macro2::TokenStream;
 use std::collections::HashMap;
@@ -63,6 +65,8 @@ pub struct Loader {
     folder: Option<PathBuf>,
     readable_equations: bool,
     interpreted: bool,
+    /// Whether contacts are separate even if they fit into the contact points of a mechanism, for tests.
+    separates_contacts: bool,
 }
 
 /// Stack size of the thread that compiles mechanisms, bytes, sufficient for deeply nested expressions.
@@ -82,7 +86,15 @@ impl Loader {
 
     fn new(origin: Origin) -> Loader {
         let (options, name, folder) = (String::new(), None, None);
-        Loader { origin, options, name, folder, readable_equations: false, interpreted: false }
+        Loader {
+            origin,
+            options,
+            name,
+            folder,
+            readable_equations: false,
+            interpreted: false,
+            separates_contacts: false,
+        }
     }
 
     /// Adds options of the attribute `#[mechanism]`, in the same syntax: `base = free, derivatives`.
@@ -125,6 +137,13 @@ impl Loader {
         self
     }
 
+    /// Makes all contacts separate, even if they fit into the contact points of a mechanism.
+    #[cfg(test)]
+    pub(crate) fn separate_contacts(mut self) -> Loader {
+        self.separates_contacts = true;
+        self
+    }
+
     /// Loads the mechanism.
     ///
     /// # Errors
@@ -146,7 +165,7 @@ impl Loader {
     }
 
     fn compile_mechanism(self) -> Result<SharedMechanism, Error> {
-        let mut source = self.read_source()?;
+        let (mut source, separate) = self.read_source_and_separate_contacts()?;
         remove_rust_only_options(&mut source);
         let requests = &mut source.mechanism.requests;
         requests.drawing = false;
@@ -160,11 +179,17 @@ impl Loader {
         let Some((model, output)) = compiled.filter(|_| cx.is_empty()) else {
             return Err(self.error_from_diagnostics(cx));
         };
-        Ok(extract_shared_data(&source, &model, output))
+        extract_shared_data(&source, &separate, &model, output)
     }
 
-    /// Reads the declaration of the mechanism and adds the options of the loader.
+    /// Reads the declaration of the mechanism without contacts that are separate.
     pub(crate) fn read_source(&self) -> Result<ParsedSource, Error> {
+        self.read_source_and_separate_contacts().map(|(source, _)| source)
+    }
+
+    /// Reads the declaration of the mechanism and adds the options of the loader. Contacts are separate if
+    /// they have more contact points than a mechanism.
+    fn read_source_and_separate_contacts(&self) -> Result<(ParsedSource, Vec<SeparateContact>), Error> {
         let (mut declaration, folder) = self.read_declaration()?;
         let options: TokenStream = self
             .options
@@ -176,7 +201,13 @@ impl Loader {
             cx.add_diagnostic(derive_above_attribute_error(attribute));
         }
         let DeclaredStruct { arguments, item, .. } = declaration;
-        let source = parse_source_and_import(arguments, item, &folder, cx);
+        let source = match self.separates_contacts {
+            true => parse_source_and_import(arguments, item, &folder, cx).and_then(|mut source| {
+                let separate = source.separate_contacts()?;
+                Some((source, separate))
+            }),
+            false => parse_source_and_separate_contacts(arguments, item, &folder, cx),
+        };
         source.filter(|_| cx.is_empty()).ok_or_else(|| self.error_from_diagnostics(cx))
     }
 
@@ -278,15 +309,50 @@ fn read_text_file(path: &Path) -> Result<String, Error> {
     String::from_utf8(bytes).map_err(|_| file_error("not UTF-8 text".to_string()))
 }
 
-/// Returns the robot of a compiled mechanism, for the command `linkwork`.
+/// Returns the robot of a compiled mechanism with its separate contacts, for the command `linkwork`.
+///
+/// # Errors
+///
+/// The surfaces of a separate contact have an error.
 #[doc(hidden)]
-#[must_use]
 pub fn compiled(
     source: &ParsedSource,
+    separate: &[SeparateContact],
     model: &Model<'_>,
     output: linkwork_compiler::derive::DerivationOutput,
-) -> Robot {
-    Robot::new(Arc::new(extract_shared_data(source, model, output)), false)
+) -> Result<Robot, Error> {
+    Ok(Robot::new(Arc::new(extract_shared_data(source, separate, model, output)?), false))
+}
+
+/// Maximum number of contact points of a loaded mechanism.
+const MAX_CONTACT_POINTS: usize = 16_384;
+
+/// Parses the struct and imports its file. Contacts that have more contact points than a mechanism become
+/// separate where possible; otherwise contacts of the file are left out, as in compiled mechanisms.
+#[doc(hidden)]
+pub fn parse_source_and_separate_contacts(
+    arguments: TokenStream,
+    item: TokenStream,
+    folder: &Path,
+    cx: &mut Diagnostics,
+) -> Option<(ParsedSource, Vec<SeparateContact>)> {
+    let mut own = Diagnostics::new();
+    let source = parse_source_with_contact_limit(
+        arguments.clone(),
+        item.clone(),
+        folder,
+        MAX_CONTACT_POINTS,
+        &mut own,
+    );
+    if let Some(mut source) = source.filter(|_| own.is_empty()) {
+        if !source.exceeds_contact_points() {
+            return Some((source, Vec::new()));
+        }
+        if let Some(separate) = source.separate_contacts() {
+            return Some((source, separate));
+        }
+    }
+    parse_source_and_import(arguments, item, folder, cx).map(|source| (source, Vec::new()))
 }
 
 /// Removes options that only apply to generated Rust code.
@@ -299,9 +365,10 @@ pub fn remove_rust_only_options(source: &mut ParsedSource) {
 /// Extracts the data of a compiled mechanism that its robots share.
 fn extract_shared_data(
     source: &ParsedSource,
+    separate: &[SeparateContact],
     model: &Model<'_>,
     mut output: linkwork_compiler::derive::DerivationOutput,
-) -> SharedMechanism {
+) -> Result<SharedMechanism, Error> {
     let frames = Frames::new(model, &mut output);
     let mut maker = CallableFunctionBuilder { model, output: &output, entries: Vec::new() };
     maker.add_derived_functions();
@@ -337,7 +404,9 @@ fn extract_shared_data(
         source.mechanism.shell.file_fields.iter().flat_map(|field| field.values.iter().copied()).collect();
     let first = defaults.len().saturating_sub(values.len());
     defaults[first..].copy_from_slice(&values);
-    SharedMechanism {
+    let (separate, separate_contacts) = SeparateContacts::load(separate, &frames, &model.parameters)?;
+    let contacts = if separate.is_empty() { contacts_of_model(model) } else { separate_contacts };
+    Ok(SharedMechanism {
         name: model.name.clone(),
         sizes,
         configuration: quantities_with_units(&mut model.configuration.iter(), &model.units.configuration),
@@ -357,8 +426,9 @@ fn extract_shared_data(
         has_speeds: model.speeds.is_some(),
         has_feedback: !model.acceleration_forces.is_empty(),
         constraints: constraint_data_of_model(model),
-        contact_rates: model.contacts.iter().map(|contact| contact.rates.len()).sum(),
-        contacts: contacts_of_model(model),
+        contact_rates: contacts.iter().map(|contact| contact.rows[1]).sum(),
+        contacts,
+        separate,
         polytopes: Polytopes::of_model(model),
         states,
         charts: output.charts.clone(),
@@ -368,7 +438,7 @@ fn extract_shared_data(
         methods,
         internal,
         about: MechanismDocumentation::new(source, model),
-    }
+    })
 }
 
 fn constraint_data_of_model(model: &Model<'_>) -> Constraints {

@@ -6,6 +6,7 @@ use crate::functions::LoadedFunction;
 use crate::layout::InputLayout;
 use crate::polytopes::Polytopes;
 use crate::routine::Values;
+use crate::separate::SeparateContacts;
 use linkwork_compiler::catalogue::Argument;
 use linkwork_compiler::mechanism::{Chart, ContactVelocityDependence};
 use std::collections::HashMap;
@@ -114,6 +115,8 @@ pub(crate) struct SharedMechanism {
     pub has_feedback: bool,
     pub constraints: Constraints,
     pub contacts: Vec<Contact>,
+    /// Contacts that are mechanisms of their own. If there are any, these are all contacts.
+    pub separate: SeparateContacts,
     /// Number of contact velocities of all contacts.
     pub contact_rates: usize,
     pub polytopes: Polytopes,

@@ -281,6 +281,14 @@ impl<'a, 'i> Simulation<'a, 'i> {
                 robot.name()
             )));
         }
+        if with_contacts && !robot.shared.separate.is_empty() && matches!(method, Method::EventDriven(_)) {
+            return Err(Error::Value(format!(
+                "`{}` has {} contacts; events are located for at most 128 contact points: choose the method \
+                 `time_stepping`",
+                robot.name(),
+                robot.shared.contacts.len()
+            )));
+        }
         let (inputs, controller) = match self.inputs {
             Inputs::Zero => (StateIndependentInputs::Zero, None),
             Inputs::Constant(u) => (StateIndependentInputs::Constant(u), None),

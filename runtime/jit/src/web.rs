@@ -127,6 +127,13 @@ impl Robot {
 
     fn web_module(&self, drawing: &Program) -> Result<WebModule, String> {
         let shared = &self.shared;
+        if !shared.separate.is_empty() {
+            return Err(format!(
+                "a page simulates at most 128 contact points, but `{}` has {}",
+                shared.name,
+                shared.contacts.len()
+            ));
+        }
         let is_bound = !(shared.constraints.names.is_empty() && shared.contacts.is_empty());
         let slips = !shared.constraints.slipping.is_empty();
         let own = if is_bound { BOUND } else { FREE };

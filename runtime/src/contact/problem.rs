@@ -2,6 +2,7 @@
 
 use super::layout::ContactLayout;
 use super::selection::FEW;
+use super::stepping::LARGE;
 use super::total::TotalArray;
 use super::{Law, Rows, Touch};
 use crate::Real;
@@ -37,7 +38,7 @@ type ContactRowMatrix<T, const NR: usize> = TotalArray<TotalArray<T, NR>, NR>;
 /// Maximum length of a displacement that closes gaps, relative to the largest gap or penetration.
 const FARTHEST: f64 = 8.0;
 /// Number of rows above which the restitution that the energy allows is found less exactly.
-const LARGE: usize = 18;
+const COARSE: usize = 18;
 /// Number of iterations of Newton's method in a step of a simulation after which the restitution that the
 /// energy allows is not refined further.
 const MAX_ITERATIONS: usize = 128;
@@ -244,7 +245,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     /// Returns the number of bisections for the restitution that the energy allows: fewer in large problems,
     /// which bounds the duration of a step.
     pub(super) fn max_restitution_bisections(&self) -> usize {
-        if self.size > LARGE { 5 } else { 12 }
+        if self.size > COARSE { 5 } else { 12 }
     }
 
     /// Whether surfaces approach each other without impulses.
@@ -480,9 +481,12 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     ) -> Option<SVector<T, NR>> {
         let normals = (0..self.count).filter(|k| self.has_gap_function(*k)).count();
         // Matrices of normal impulses are smaller.
-        match const { NR > FEW && NK > FEW } && normals <= FEW {
-            true => self.gap_closing_impulses_with_capacity::<FEW, FEW>(impulses, gaps, distances),
-            false => self.gap_closing_impulses_with_capacity::<NK, NR>(impulses, gaps, distances),
+        if const { NR > FEW && NK > FEW } && normals <= FEW {
+            self.gap_closing_impulses_with_capacity::<FEW, FEW>(impulses, gaps, distances)
+        } else if const { NR > LARGE && NK > LARGE } && normals <= LARGE {
+            self.gap_closing_impulses_with_capacity::<LARGE, LARGE>(impulses, gaps, distances)
+        } else {
+            self.gap_closing_impulses_with_capacity::<NK, NR>(impulses, gaps, distances)
         }
     }
 

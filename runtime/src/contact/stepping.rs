@@ -20,9 +20,10 @@ use nalgebra::SVector;
 const PARTS: usize = 4;
 
 /// Sizes of the arrays for closed contacts of mechanisms that have more contact velocities.
-const SMALL: usize = FEW;
+pub(super) const SMALL: usize = FEW;
 const MEDIUM: usize = 72;
-const LARGE: usize = 144;
+pub(super) const LARGE: usize = 144;
+const LARGEST: usize = 576;
 
 /// Start of a step.
 pub(super) struct StepStart<'a, T, const NQ: usize, const NV: usize> {
@@ -236,6 +237,8 @@ where
         act_in_arrays!(MEDIUM, MEDIUM)
     } else if const { NR <= LARGE } || rows <= LARGE {
         act_in_arrays!(LARGE, LARGE)
+    } else if const { NR > LARGEST } && rows <= LARGEST {
+        act_in_arrays!(LARGEST, LARGEST)
     } else {
         act_in_arrays!(NK, NR)
     }

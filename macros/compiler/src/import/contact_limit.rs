@@ -1,7 +1,7 @@
 //! Contacts of a file that fit into the number of contact points of a mechanism.
 
 use crate::hull::{Hull, MAX_VERTICES};
-use crate::syntax::contact::{MAX_CONTACT_POINTS, collision_shape_indices};
+use crate::syntax::contact::collision_shape_indices;
 use crate::syntax::{
     BodyOrInertiaMethod, CollisionShape, Contact, Description, Expr, ExprKind, FileContactKind, Key,
     SurfaceFeatureCounts, SurfaceId,
@@ -10,11 +10,11 @@ use crate::syntax::{
 /// Maximum number of names in a line of the documentation.
 const MAX_NAMES: usize = 12;
 
-/// Removes contacts of the file until the contact points are at most the maximum number, and lists them in
-/// the documentation. Contacts with planes are always included. Then each contact is included if its points
+/// Removes contacts of the file until the contact points are at most `limit`, and lists them in the
+/// documentation. Contacts with planes are always included. Then each contact is included if its points
 /// fit, in the order of the kinds of contacts and of the distances of the shapes; contacts of bodies that
 /// joints connect are included only if the points of all of them fit.
-pub(super) fn select_contacts(description: &mut Description) {
+pub(super) fn select_contacts(description: &mut Description, limit: usize) {
     let (contacts, collisions) = (&description.contacts, &description.collisions);
     let counts: Vec<usize> =
         contacts.iter().map(|contact| contact_point_count(contact, collisions).unwrap_or(0)).collect();
@@ -52,7 +52,7 @@ pub(super) fn select_contacts(description: &mut Description) {
     let (mut excess, mut connected_excess) = (Vec::new(), 0);
     let mut connected_fit = None;
     for k in optional {
-        let free = MAX_CONTACT_POINTS.saturating_sub(used);
+        let free = limit.saturating_sub(used);
         let fits = match is_between_connected_bodies(k) {
             true => *connected_fit.get_or_insert(connected_points <= free),
             false => counts[k] <= free,
@@ -69,7 +69,7 @@ pub(super) fn select_contacts(description: &mut Description) {
     }
     let mut omitted = omitted.into_iter();
     description.contacts.retain(|_| omitted.next() != Some(true));
-    let most = format!("the {MAX_CONTACT_POINTS} contact points of a mechanism");
+    let most = format!("the {limit} contact points of a mechanism");
     if !excess.is_empty() {
         let what = format!("contacts that do not fit into {most}");
         description.left_out.push(list_first_names(&what, &excess));
@@ -97,7 +97,7 @@ pub(super) fn one_plus_friction_moment_count(contact: &Contact) -> usize {
 
 /// Returns the number of contact points of a contact, with its moments of friction; `None` if a pair of its
 /// surfaces is not supported. A compliant contact has none.
-pub(super) fn contact_point_count(contact: &Contact, collisions: &[CollisionShape]) -> Option<usize> {
+pub fn contact_point_count(contact: &Contact, collisions: &[CollisionShape]) -> Option<usize> {
     if contact.is_compliant() {
         return Some(0);
     }

@@ -8,7 +8,7 @@ use super::mesh;
 use super::pose::{Vector, matrix_times_vector, vector_sum};
 use crate::diag::Diagnostics;
 use crate::hull::{Hull, HullError, MAX_VERTICES};
-use crate::syntax::contact::{MAX_CONTACT_POINTS, collision_shape_indices};
+use crate::syntax::contact::collision_shape_indices;
 use crate::syntax::{
     CollisionShape, Contact, Description, Expr, ExprKind, FileContactKind, MeshVertices, Name, Shape,
 };
@@ -25,8 +25,14 @@ const MAX_ERROR: f64 = 0.1;
 const MAX_TRIANGLES: usize = 200_000;
 
 /// Reads the meshes that contacts use, and replaces them by the vertices of their convex hulls. Paths in
-/// `hull("…")` are relative to `folder`. Returns the paths of the files that were read.
-pub fn read_hulls(description: &mut Description, folder: &Path, cx: &mut Diagnostics) -> Vec<PathBuf> {
+/// `hull("…")` are relative to `folder`. The mechanism has at most `limit` contact points. Returns the paths of
+/// the files that were read.
+pub fn read_hulls(
+    description: &mut Description,
+    folder: &Path,
+    limit: usize,
+    cx: &mut Diagnostics,
+) -> Vec<PathBuf> {
     let mut files = Vec::new();
     let mut notes = Vec::new();
     for contact in &mut description.contacts {
@@ -35,7 +41,7 @@ pub fn read_hulls(description: &mut Description, folder: &Path, cx: &mut Diagnos
         }
     }
     let is_mesh = |part: &CollisionShape| part.shape == Shape::Mesh && part.mesh.is_some();
-    let share = max_vertices_per_mesh(&description.contacts, &description.collisions);
+    let share = max_vertices_per_mesh(&description.contacts, &description.collisions, limit);
     // Vertices allowed for each mesh, zero if no contact uses it, and whether a mechanism without its hull is
     // an error. Declared contacts take precedence over contacts of the file with planes, and these over other
     // contacts of the file.
@@ -66,8 +72,8 @@ pub fn read_hulls(description: &mut Description, folder: &Path, cx: &mut Diagnos
             part.hull = hull.vertices;
         }
     }
-    omit_contacts_without_hulls(description, share);
-    select_contacts(description);
+    omit_contacts_without_hulls(description, share, limit);
+    select_contacts(description, limit);
     description.left_out.extend(notes);
     files
 }
@@ -166,8 +172,8 @@ fn describe_hull_error(error: HullError) -> String {
 }
 
 /// Returns the number of vertices for each mesh in the contacts with planes that the file declares: the
-/// maximum number of contact points without those of other shapes, divided by the number of meshes.
-fn max_vertices_per_mesh(contacts: &[Contact], collisions: &[CollisionShape]) -> usize {
+/// limit of contact points without those of other shapes, divided by the number of meshes.
+fn max_vertices_per_mesh(contacts: &[Contact], collisions: &[CollisionShape], limit: usize) -> usize {
     let (mut others, mut meshes) = (0, 0);
     let is_on_plane =
         |contact: &&Contact| contact.of_file.is_some_and(|of_file| of_file.kind == FileContactKind::Plane);
@@ -178,12 +184,12 @@ fn max_vertices_per_mesh(contacts: &[Contact], collisions: &[CollisionShape]) ->
             _ => meshes += one_plus_friction_moment_count(contact),
         }
     }
-    (MAX_CONTACT_POINTS.saturating_sub(others) / meshes.max(1)).min(MAX_VERTICES)
+    (limit.saturating_sub(others) / meshes.max(1)).min(MAX_VERTICES)
 }
 
 /// Removes the contacts of the file whose mesh has no hull: there are too many meshes, so that each has at
 /// most `share` vertices, or no convex hull represents the mesh.
-fn omit_contacts_without_hulls(description: &mut Description, share: usize) {
+fn omit_contacts_without_hulls(description: &mut Description, share: usize, limit: usize) {
     let collisions = &description.collisions;
     let has_all_mesh_hulls = |contact: &Contact| {
         let sides = [&contact.first, &contact.second].into_iter();
@@ -197,8 +203,7 @@ fn omit_contacts_without_hulls(description: &mut Description, share: usize) {
         return;
     }
     description.left_out.push(if share < MAX_VERTICES {
-        let most = MAX_CONTACT_POINTS;
-        let what = format!("contacts of meshes whose hulls would have more than {most} points together");
+        let what = format!("contacts of meshes whose hulls would have more than {limit} points together");
         format!("{what}: {}", without.len())
     } else {
         let what = format!("contacts of meshes that no convex hull with {MAX_VERTICES} vertices represents");

@@ -29,6 +29,7 @@ mod xml;
 #[cfg(test)]
 mod tests;
 
+pub use contact_limit::contact_point_count;
 pub use file::{LARGEST_FILE, read_imported_file, with_standard_whitespace};
 pub use hulls::read_hulls;
 pub use imported::ImportedMechanism;

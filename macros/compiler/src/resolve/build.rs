@@ -27,7 +27,7 @@ use crate::syntax::{Description, GROUND, InertiaOption, Name};
 use std::rc::Rc;
 
 /// Maximum number of velocities of a mechanism. The generated code would be unreasonably large beyond it.
-const MAX_VELOCITIES: usize = 128;
+const MAX_VELOCITIES: usize = 256;
 /// Maximum number of unused parameters that are reported separately.
 const MAX_SEPARATE_REPORTS: usize = 3;
 
@@ -308,7 +308,8 @@ impl<'a, 'g> Builder<'a, 'g> {
         let unused = unused.chain(names.zip(&records.used_tables));
         // A state counts as used: its value is visible to the caller that integrates it.
         let is_state = |p: &Name| self.scope.description.states.iter().any(|(state, _)| state.text == p.text);
-        let unused = unused.filter(|(p, _)| !is_state(p));
+        let separate = &self.scope.description.separate_contact_parameters;
+        let unused = unused.filter(|(p, _)| !is_state(p) && !separate.contains(&p.text));
         let unused: Vec<_> =
             unused.filter(|(p, used)| !**used && !p.text.starts_with('_')).map(|(p, _)| p).collect();
         // Many unused parameters are reported as one error.

@@ -1,5 +1,6 @@
 //! Result of parsing `#[mechanism]`: the description, the options, and the remaining struct.
 
+use super::contact::MAX_CONTACT_POINTS;
 use super::declaration::doc_lines;
 use super::file_parameters::{FileField, FileParameters};
 use super::readable::MechanismReadability;
@@ -210,6 +211,8 @@ pub struct FileOptions {
     pub collisions: bool,
     /// Whether the visual geometry of a robot file is drawn.
     pub visuals: bool,
+    /// Maximum number of contact points.
+    pub contact_points: usize,
 }
 
 impl FileOptions {
@@ -231,6 +234,7 @@ impl FileOptions {
             loops: LoopOption::Refuse,
             collisions: false,
             visuals: false,
+            contact_points: MAX_CONTACT_POINTS,
         }
     }
 }

@@ -204,6 +204,11 @@ impl Expr {
         if text.chars().count() > 60 { "…".to_string() } else { text }
     }
 
+    /// Returns the expression as the user would write it.
+    pub fn source_text(&self) -> String {
+        expression_text(self)
+    }
+
     /// Returns whether another expression would be written with the same text.
     pub fn has_same_text(&self, other: &Expr) -> bool {
         expression_text(self) == expression_text(other)

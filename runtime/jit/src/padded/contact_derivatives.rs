@@ -11,7 +11,7 @@ use std::borrow::Borrow;
 type Vector<const N: usize> = SVector<f64, N>;
 type Square<const N: usize> = SMatrix<f64, N, N>;
 
-impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded<NQ, NV, NU, R> {
+impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot> + Clone> Padded<NQ, NV, NU, R> {
     /// Whether the derivatives of the contacts are available.
     pub(super) fn has_contact_derivatives(&self) -> bool {
         self.has_derivatives()
@@ -20,8 +20,14 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
     }
 }
 
-impl<const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize, R: Borrow<Robot>>
-    Derivatives<NQ, NV, NU> for PaddedContacts<NQ, NV, NU, NK, NR, R>
+impl<
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NK: usize,
+    const NR: usize,
+    R: Borrow<Robot> + Clone,
+> Derivatives<NQ, NV, NU> for PaddedContacts<NQ, NV, NU, NK, NR, R>
 {
     forward! {
         integrate_derivatives(dv: &Vector<NV>) -> (Square<NV>, Square<NV>);
@@ -42,8 +48,14 @@ impl<const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const N
     }
 }
 
-impl<const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize, R: Borrow<Robot>>
-    ContactDerivatives<NQ, NV, NU, NK, NR> for PaddedContacts<NQ, NV, NU, NK, NR, R>
+impl<
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NK: usize,
+    const NR: usize,
+    R: Borrow<Robot> + Clone,
+> ContactDerivatives<NQ, NV, NU, NK, NR> for PaddedContacts<NQ, NV, NU, NK, NR, R>
 {
     fn contact_derivatives(
         &self,

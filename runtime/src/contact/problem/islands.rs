@@ -2,13 +2,12 @@
 //! connect.
 
 use super::super::Rows;
+use super::super::stepping::{LARGE, SMALL};
 use super::super::total::TotalArray;
 use super::linear::ImpulseEquations;
 use super::{ContactProblem, RowList};
 use crate::Real;
 
-/// Number of rows up to which a group has small arrays.
-const SMALL: usize = super::super::selection::FEW;
 
 impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     /// Returns the group of each contact, and the number of groups.
@@ -101,9 +100,12 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         for g in 0..*count {
             let members = (0..self.count).filter(|k| group[*k] == g);
             let rows = members.fold(0, |rows, k| rows + self.rows[k].count);
-            match rows <= SMALL {
-                true => self.solve_island_impulses::<SMALL, SMALL>((group, g), start, &mut impulses),
-                false => self.solve_island_impulses::<NK, NR>((group, g), start, &mut impulses),
+            if rows <= SMALL {
+                self.solve_island_impulses::<SMALL, SMALL>((group, g), start, &mut impulses);
+            } else if const { NR > LARGE } && rows <= LARGE {
+                self.solve_island_impulses::<LARGE, LARGE>((group, g), start, &mut impulses);
+            } else {
+                self.solve_island_impulses::<NK, NR>((group, g), start, &mut impulses);
             }
         }
         impulses

@@ -11,7 +11,6 @@ use crate::import::element::{
 };
 use crate::import::pose::{NumericPose, vector_norm, vector_sum, vector_times_scalar};
 use crate::import::robot::unused_name;
-use crate::syntax::contact::MAX_CONTACT_POINTS;
 use crate::syntax::{ContactOption, FileContact, FileContactKind, GROUND, JointKind, Name};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -108,7 +107,8 @@ impl<'a> MjcfReader<'a> {
             }
             is_supported
         });
-        self.left_out.extend(keep_nearest_candidates_within_limit(&mut candidates));
+        self.left_out
+            .extend(keep_nearest_candidates_within_limit(&mut candidates, self.options.contact_points));
         for one in candidates {
             let [first, second] = one.shapes;
             let text = match one.name {
@@ -409,9 +409,9 @@ fn read_pair_friction(element: &super::defaults::ElementWithDefaults<'_>, cx: &m
     friction_of_condim(dimension, [first, torsional, around_first])
 }
 
-/// Removes the most distant candidates of each kind beyond the maximum number of contact points, because each
+/// Removes the most distant candidates of each kind beyond the limit of contact points, because each
 /// contact has a point. Returns a line of the documentation for each kind with removed candidates.
-fn keep_nearest_candidates_within_limit(candidates: &mut Vec<ContactCandidate>) -> Vec<String> {
+fn keep_nearest_candidates_within_limit(candidates: &mut Vec<ContactCandidate>, limit: usize) -> Vec<String> {
     let mut lines = Vec::new();
     for (kind, what) in [
         (FileContactKind::World, "contacts of bodies with distant shapes of the world"),
@@ -423,18 +423,18 @@ fn keep_nearest_candidates_within_limit(candidates: &mut Vec<ContactCandidate>) 
             .filter(|one| one.of_file.kind == kind)
             .map(|one| one.of_file.distance)
             .collect();
-        if distances.len() <= MAX_CONTACT_POINTS {
+        if distances.len() <= limit {
             continue;
         }
         distances.sort_by(f64::total_cmp);
-        let limit = match kind {
+        let farthest = match kind {
             FileContactKind::Connected => f64::NEG_INFINITY,
-            _ => distances[MAX_CONTACT_POINTS],
+            _ => distances[limit],
         };
         let count = candidates.len();
-        candidates.retain(|one| one.of_file.kind != kind || one.of_file.distance < limit);
+        candidates.retain(|one| one.of_file.kind != kind || one.of_file.distance < farthest);
         let removed = count - candidates.len();
-        let reason = format!("beyond the {MAX_CONTACT_POINTS} contact points of a mechanism");
+        let reason = format!("beyond the {limit} contact points of a mechanism");
         lines.push(format!("{what}, {reason}: {removed}"));
     }
     lines

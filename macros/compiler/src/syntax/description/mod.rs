@@ -100,6 +100,8 @@ pub struct Description {
     pub constraints: Vec<Constraint>,
     /// Declared unilateral contacts.
     pub contacts: Vec<Contact>,
+    /// Names of the parameters of contacts that have been separated from the mechanism.
+    pub separate_contact_parameters: Vec<String>,
     /// Collision geometry of a file's links.
     pub collisions: Vec<CollisionShape>,
     /// Whether the option `drawing` is set.
@@ -141,6 +143,7 @@ impl Description {
             limits: Vec::new(),
             equilibria: Vec::new(),
             contacts: Vec::new(),
+            separate_contact_parameters: Vec::new(),
             collisions: Vec::new(),
             drawing: false,
             visuals: Vec::new(),
