@@ -113,3 +113,20 @@ fn too_many_degrees_of_freedom_are_rejected_with_advice() {
         && one.contains("divide the mechanism"));
     assert!(good, "{found:#?}");
 }
+
+/// Rounding errors of the mass matrix of a long chain are small: no joint of it seems to move no inertia.
+/// Successive axes are perpendicular, and the smallest eigenvalue of the mass matrix is 0.46 kg m².
+#[test]
+fn long_chains_have_inertia() {
+    let mut fields = String::new();
+    for k in 0..120 {
+        let parent = if k == 0 { "ground".to_string() } else { format!("b{}.at(0.1 * x)", k - 1) };
+        let axis = if k % 2 == 0 { "y" } else { "z" };
+        fields += &format!(
+            "#[body(mass = 1, com = x, inertia = sphere(1, 0.1))] b{k}: Body, #[joint({parent} -> b{k}, about \
+             = {axis})] j{k}: Pin,"
+        );
+    }
+    let found = compiler_messages("", &fields);
+    assert!(found.is_empty(), "{found:#?}");
+}

@@ -59,7 +59,8 @@ impl<'g> Tape<'g> {
 
     /// Evaluates the expressions of the tape with estimates of their rounding errors.
     pub fn evaluate_with_rounding(&self, symbol: &dyn Fn(Symbol) -> f64) -> Vec<ValueWithRoundingError> {
-        self.evaluate_tape(&|s| ValueWithRoundingError::from_number(symbol(s)))
+        let values = self.evaluate_tape(&|s| PerturbedValue::from_number(symbol(s)));
+        values.into_iter().map(PerturbedValue::with_rounding_error).collect()
     }
 
     fn evaluate_tape<V: TapeNumber>(&self, symbol: &dyn Fn(Symbol) -> V) -> Vec<V> {
@@ -127,10 +128,7 @@ impl TapeNumber for f64 {
     }
 }
 
-/// A value with an estimate of its rounding error. Every constant, symbol and operation has an independent
-/// relative error of [`f64::EPSILON`], and their effects add like standard deviations. This is a running
-/// error analysis (Higham, *Accuracy and Stability of Numerical Algorithms*, 2002, § 3.3); with sums of
-/// squares, errors do not grow in rotations.
+/// A value with an estimate of its rounding error.
 #[derive(Clone, Copy, Debug)]
 pub struct ValueWithRoundingError {
     /// Computed value of a node of the tape.
@@ -141,7 +139,7 @@ pub struct ValueWithRoundingError {
 
 impl ValueWithRoundingError {
     /// Maximum ratio of a value to its error for which the value may be rounding error alone. For random
-    /// mechanisms, the ratio of pivots of the mass matrix that are exactly zero is at most 0.4. That of other
+    /// mechanisms, the ratio of pivots of the mass matrix that are exactly zero is at most 2. That of other
     /// pivots is at least `1e9`, or `1e6` if masses differ by twelve orders of magnitude.
     const MOST_ERRORS: f64 = 32.0;
 
@@ -151,39 +149,62 @@ impl ValueWithRoundingError {
     }
 }
 
-impl TapeNumber for ValueWithRoundingError {
-    fn from_number(number: f64) -> ValueWithRoundingError {
-        ValueWithRoundingError { value: number, error: f64::EPSILON * number.abs() }
+/// Number of perturbed values beside each value.
+const PERTURBED: usize = 4;
+
+/// A value, and the values for random perturbations of all constants, symbols and operations by relative
+/// errors with the standard deviation [`f64::EPSILON`] (Monte Carlo arithmetic: Parker, Pierce and Eggert,
+/// *Monte Carlo arithmetic: how to gamble with floating point and win*, Comput. Sci. Eng. 2, 2000). Unlike
+/// bounds of single errors, perturbed values keep the correlations of errors, so that errors do not seem to
+/// grow in long products of rotations.
+#[derive(Clone, Copy)]
+struct PerturbedValue {
+    value: f64,
+    perturbed: [f64; PERTURBED],
+}
+
+impl PerturbedValue {
+    /// Perturbs values by errors that depend on the digits of `value` alone, so that results are
+    /// reproducible.
+    fn with_perturbations(value: f64, perturbed: [f64; PERTURBED]) -> PerturbedValue {
+        let mut random = value.to_bits();
+        let perturbed = perturbed.map(|exact| {
+            // The generator SplitMix64 (Steele, Lea and Flood, 2014).
+            random = random.wrapping_add(0x9e37_79b9_7f4a_7c15);
+            let mut mixed = random;
+            mixed = (mixed ^ mixed >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+            mixed = (mixed ^ mixed >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+            mixed ^= mixed >> 31;
+            let uniform = (mixed >> 11) as f64 / (1_u64 << 53) as f64;
+            // Uniform in an interval with the standard deviation one.
+            exact * (1.0 + f64::EPSILON * (2.0 * uniform - 1.0) * 3_f64.sqrt())
+        });
+        PerturbedValue { value, perturbed }
     }
 
-    fn sum_of_lanes(lanes: &[ValueWithRoundingError]) -> ValueWithRoundingError {
-        let mut sum = ValueWithRoundingError { value: 0.0, error: 0.0 };
-        for lane in lanes {
-            sum = ValueWithRoundingError {
-                value: sum.value + lane.value,
-                error: libm::hypot(sum.error, lane.error),
-            };
-        }
-        sum
+    fn with_rounding_error(self) -> ValueWithRoundingError {
+        let squares = self.perturbed.map(|perturbed| (perturbed - self.value).powi(2));
+        let error = (squares.iter().sum::<f64>() / PERTURBED as f64).sqrt();
+        // A number that is not finite has an unknown error.
+        ValueWithRoundingError { value: self.value, error: if error.is_nan() { f64::INFINITY } else { error } }
+    }
+}
+
+impl TapeNumber for PerturbedValue {
+    fn from_number(number: f64) -> PerturbedValue {
+        PerturbedValue::with_perturbations(number, [number; PERTURBED])
     }
 
-    fn apply_node_operation(node: Node, operands: [ValueWithRoundingError; 3]) -> ValueWithRoundingError {
-        let at = operands.map(|operand| operand.value);
-        let value = apply_operation(node, at);
-        let mut error = f64::EPSILON * value.abs();
-        for (k, operand) in operands.iter().enumerate().filter(|(_, operand)| operand.error > 0.0) {
-            let moved = [-operand.error, operand.error].map(|by| {
-                let mut at = at;
-                at[k] += by;
-                (apply_operation(node, at) - value).abs()
-            });
-            error = libm::hypot(error, moved[0].max(moved[1]));
-        }
-        // If both factors are only rounding error, the first-order terms above miss the error of the product.
-        if let (Node::Mul(..), [a, b, _]) = (node, operands) {
-            error = libm::hypot(error, a.error * b.error);
-        }
-        ValueWithRoundingError { value, error }
+    fn sum_of_lanes(lanes: &[PerturbedValue]) -> PerturbedValue {
+        let sum = |of: &dyn Fn(&PerturbedValue) -> f64| lanes.iter().map(of).sum::<f64>();
+        let perturbed = std::array::from_fn(|k| sum(&|lane| lane.perturbed[k]));
+        PerturbedValue::with_perturbations(sum(&|lane| lane.value), perturbed)
+    }
+
+    fn apply_node_operation(node: Node, operands: [PerturbedValue; 3]) -> PerturbedValue {
+        let value = apply_operation(node, operands.map(|operand| operand.value));
+        let perturbed = |k: usize| apply_operation(node, operands.map(|operand| operand.perturbed[k]));
+        PerturbedValue::with_perturbations(value, std::array::from_fn(perturbed))
     }
 }
 
