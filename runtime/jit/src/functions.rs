@@ -8,6 +8,7 @@ use crate::kernels::{self, ColumnGroup};
 use crate::merge::ProgramMerger;
 use crate::polytopes::takes_features;
 use crate::routine::{Routine, Values};
+use crate::separate::SeparateContactFunction;
 use crate::shared::SharedMechanism;
 use linkwork_compiler::catalogue::{Argument, CalledFunction, GeneratedId, REACTION, Record, Shape};
 use linkwork_compiler::derive::{self, DerivationOutput};
@@ -86,6 +87,8 @@ pub(crate) enum ResultAssembly {
     ConfigurationSpaceFunction(ConfigurationSpaceFunction),
     /// The results are computed by the runtime, for a mechanism with constraints.
     Constrained(ConstrainedDynamicsFunction),
+    /// The results are those of separate contacts.
+    SeparateContacts(SeparateContactFunction),
 }
 
 /// Computation of the derivatives of forward dynamics by calls of other functions.
@@ -115,7 +118,9 @@ impl ResultAssembly {
             | ResultAssembly::Linear { routine, .. }
             | ResultAssembly::CalledLinear { routine, .. } => vec![routine],
             ResultAssembly::ForwardDerivativesByCalls(called) => vec![&called.accelerations, &called.known],
-            ResultAssembly::ConfigurationSpaceFunction(_) | ResultAssembly::Constrained(_) => Vec::new(),
+            ResultAssembly::ConfigurationSpaceFunction(_)
+            | ResultAssembly::Constrained(_)
+            | ResultAssembly::SeparateContacts(_) => Vec::new(),
         }
     }
 
@@ -203,7 +208,7 @@ impl LoadedFunction {
                 space.evaluate(shared, values, &self.arguments, out, work)
             }
             // The robot calls these functions itself.
-            ResultAssembly::Constrained(_) => out.fill(f64::NAN),
+            ResultAssembly::Constrained(_) | ResultAssembly::SeparateContacts(_) => out.fill(f64::NAN),
         }
     }
 }

@@ -10,7 +10,7 @@ use crate::internal::INTERNAL;
 use crate::methods::METHODS;
 use crate::polytopes::Polytopes;
 use crate::robot::Robot;
-use crate::separate::SeparateContacts;
+use crate::separate::{SeparateContactFunction, SeparateContacts};
 use crate::shared::{
     Constraints, Contact, FirstOrderState, ParameterRequirement, Quantity, SharedMechanism, Sizes,
 };
@@ -375,6 +375,11 @@ fn extract_shared_data(
     ConfigurationSpaceFunction::add(&mut maker);
     constrained::add(&mut maker);
     maker.entries.extend(frames.frame_function_entries(model.time));
+    let (separate, separate_contacts) = SeparateContacts::load(separate, &frames, &model.parameters)?;
+    let contacts = if separate.is_empty() { contacts_of_model(model) } else { separate_contacts };
+    if !separate.is_empty() {
+        maker.entries.extend(SeparateContactFunction::entries(&contacts, model.nv(), model.time));
+    }
     let (mut entries, sizes) = (maker.entries, Sizes { nq: model.nq(), nv: model.nv(), nu: model.nu() });
     for entry in &mut entries {
         entry.lengths = entry.arguments.iter().map(|argument| sizes.length(*argument)).collect();
@@ -404,8 +409,6 @@ fn extract_shared_data(
         source.mechanism.shell.file_fields.iter().flat_map(|field| field.values.iter().copied()).collect();
     let first = defaults.len().saturating_sub(values.len());
     defaults[first..].copy_from_slice(&values);
-    let (separate, separate_contacts) = SeparateContacts::load(separate, &frames, &model.parameters)?;
-    let contacts = if separate.is_empty() { contacts_of_model(model) } else { separate_contacts };
     Ok(SharedMechanism {
         name: model.name.clone(),
         sizes,

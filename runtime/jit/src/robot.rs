@@ -502,6 +502,9 @@ impl Robot {
         match &entry.plan {
             ResultAssembly::Program(routine) if !entry.takes_features => routine.run(values, out, &mut []),
             ResultAssembly::Constrained(kind) => return self.call_constrained(*kind, arguments, out),
+            ResultAssembly::SeparateContacts(function) => {
+                return self.call_separate_contacts(*function, arguments, out);
+            }
             _ => WORK.with_borrow_mut(|work| {
                 if work.len() < entry.work {
                     work.resize(entry.work, 0.0);

@@ -1,7 +1,7 @@
 //! Contacts of a file that fit into the number of contact points of a mechanism.
 
 use crate::hull::{Hull, MAX_VERTICES};
-use crate::syntax::contact::collision_shape_indices;
+use crate::syntax::contact::{MAX_CONTACT_POINTS, collision_shape_indices};
 use crate::syntax::{
     BodyOrInertiaMethod, CollisionShape, Contact, Description, Expr, ExprKind, FileContactKind, Key,
     SurfaceFeatureCounts, SurfaceId,
@@ -13,7 +13,8 @@ const MAX_NAMES: usize = 12;
 /// Removes contacts of the file until the contact points are at most `limit`, and lists them in the
 /// documentation. Contacts with planes are always included. Then each contact is included if its points
 /// fit, in the order of the kinds of contacts and of the distances of the shapes; contacts of bodies that
-/// joints connect are included only if the points of all of them fit.
+/// joints connect are included only if the points of all of them fit into a mechanism without separate
+/// contacts.
 pub(super) fn select_contacts(description: &mut Description, limit: usize) {
     let (contacts, collisions) = (&description.contacts, &description.collisions);
     let counts: Vec<usize> =
@@ -54,7 +55,10 @@ pub(super) fn select_contacts(description: &mut Description, limit: usize) {
     for k in optional {
         let free = limit.saturating_sub(used);
         let fits = match is_between_connected_bodies(k) {
-            true => *connected_fit.get_or_insert(connected_points <= free),
+            true => {
+                let free = limit.min(MAX_CONTACT_POINTS).saturating_sub(used);
+                *connected_fit.get_or_insert(connected_points <= free)
+            }
             false => counts[k] <= free,
         };
         if fits {
@@ -75,7 +79,11 @@ pub(super) fn select_contacts(description: &mut Description, limit: usize) {
         description.left_out.push(list_first_names(&what, &excess));
     }
     if connected_excess > 0 {
-        let what = format!("contacts of bodies that joints connect, which do not fit into {most}");
+        let most = limit.min(MAX_CONTACT_POINTS);
+        let what = format!(
+            "contacts of bodies that joints connect, which do not fit into the {most} contact points of a \
+             mechanism"
+        );
         description.left_out.push(format!("{what}: {connected_excess}"));
     }
 }

@@ -146,3 +146,20 @@ fn separate_contacts_are_those_of_one_mechanism() {
         }
     }
 }
+
+/// Functions of separate contacts by name have the gaps, velocities and Jacobian of the contacts.
+#[test]
+fn functions_of_separate_contacts_have_names() {
+    let values = [("radius", 0.15), ("grip", 0.7)];
+    let apart = Loader::text(SCENE).separate_contacts().load().unwrap().with_parameters(&values).unwrap();
+    let mut q = apart.initial_configuration().unwrap().as_slice().to_vec();
+    let v: Vec<f64> = (0..apart.nv()).map(|k| 0.1 * k as f64 - 0.5).collect();
+    let result =
+        |name: &str, arguments: &[&[f64]]| apart.evaluate(&apart.function(name).unwrap(), arguments).unwrap();
+    let gaps = result("contact_gaps", &[&q]);
+    let ball = apart.configuration().iter().position(|one| one.name == "ball_pose.z").unwrap();
+    assert!((gaps[0] - (q[ball] - 0.15)).abs() < 1e-15, "{gaps:?}");
+    let (rates, jacobian) = (result("contact_rates", &[&q, &v]), result("contact_jacobian", &[&q]));
+    let product = |i: usize| (0..v.len()).map(|j| jacobian[j * rates.len() + i] * v[j]).sum::<f64>();
+    assert!((0..rates.len()).all(|i| (product(i) - rates[i]).abs() < 1e-12));
+}

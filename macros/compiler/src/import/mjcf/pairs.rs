@@ -11,6 +11,7 @@ use crate::import::element::{
 };
 use crate::import::pose::{NumericPose, vector_norm, vector_sum, vector_times_scalar};
 use crate::import::robot::unused_name;
+use crate::syntax::contact::MAX_CONTACT_POINTS;
 use crate::syntax::{ContactOption, FileContact, FileContactKind, GROUND, JointKind, Name};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -423,6 +424,10 @@ fn keep_nearest_candidates_within_limit(candidates: &mut Vec<ContactCandidate>, 
             .filter(|one| one.of_file.kind == kind)
             .map(|one| one.of_file.distance)
             .collect();
+        let limit = match kind {
+            FileContactKind::Connected => limit.min(MAX_CONTACT_POINTS),
+            _ => limit,
+        };
         if distances.len() <= limit {
             continue;
         }
