@@ -110,7 +110,7 @@ use std::path::PathBuf;
 /// The dynamics and the trait `Mechanism` are not generated. Use this option for files that describe only
 /// shapes and joints; mass properties in the file are ignored.
 ///
-/// A mechanism has at most 128 degrees of freedom and 1024 bodies, because the generated code is expanded for
+/// A mechanism has at most 256 degrees of freedom and 1024 bodies, because the generated code is expanded for
 /// each of them. Products of numeric masses, moments and lengths must be finite.
 ///
 /// `ground` is the fixed frame; any other link of this name is renamed to `ground_link`. A fixed root with

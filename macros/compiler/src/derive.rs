@@ -154,7 +154,8 @@ fn derive_kinematic<'g>(
             .add_help("remove `equations` or `inertia = none`");
         return None;
     }
-    let asked = RequestedFunctions { drawing: requests.drawing, ..RequestedFunctions::default() };
+    let RequestedFunctions { drawing, separate_contact, .. } = requests;
+    let asked = RequestedFunctions { drawing, separate_contact, ..RequestedFunctions::default() };
     let own = (model, speeds);
     let functions = derive_and_lower_functions(
         own,

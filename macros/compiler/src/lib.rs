@@ -16,7 +16,6 @@ pub mod mechanics;
 pub mod mechanism;
 pub mod passes;
 pub mod resolve;
-mod separate_contacts;
 mod source;
 pub mod syntax;
 pub mod vectorise;
@@ -33,8 +32,8 @@ use syntax::{Description, Mechanism};
 
 pub use declarations::{DeclaredStruct, mechanism_declarations};
 pub use derive::{derive, derive_with_options, equations_as_text, equations_latex};
+pub use import::{SeparateContact, SeparateContactParameter};
 pub use linkwork_symbolic::{expr, lower};
-pub use separate_contacts::{SeparateContact, SeparateContactParameter};
 pub use source::{ParsedSource, parse_source_and_import, parse_source_with_contact_limit};
 pub use syntax::struct_without_fields_if_duplicate;
 

@@ -31,8 +31,8 @@ pub fn parse_source_and_import(
 }
 
 /// Parses the struct and imports its file with at most `limit` contact points, see
-/// [`separate_contacts`](ParsedSource::separate_contacts). Returns `None` if the item is not a struct that can
-/// be analysed further.
+/// [`separate_contacts`](ParsedSource::separate_contacts). Returns `None` if the item is not a struct that
+/// can be analysed further.
 pub fn parse_source_with_contact_limit(
     arguments: TokenStream,
     item: TokenStream,
@@ -58,6 +58,23 @@ pub fn parse_source_with_contact_limit(
     }
     files.extend(import::read_hulls(&mut mechanism.description, folder, limit, cx));
     Some(ParsedSource { mechanism, files, imported: cx.len() == before })
+}
+
+impl ParsedSource {
+    /// Whether the declared contacts have more contact points than a mechanism.
+    pub fn exceeds_contact_points(&self) -> bool {
+        import::exceeds_contact_points(&self.mechanism.description)
+    }
+
+    /// Removes the contacts without compliance from the mechanism and returns them. Returns `None` if they
+    /// cannot be separated ([`import::separate_contacts`]), or with the option `derivatives`, which is for
+    /// all contacts together.
+    pub fn separate_contacts(&mut self) -> Option<Vec<import::SeparateContact>> {
+        if self.mechanism.requests.has_option(syntax::RequestOption::Derivatives) {
+            return None;
+        }
+        import::separate_contacts(&mut self.mechanism.description)
+    }
 }
 
 /// Merges the mechanism of an imported file into the description. Elements of the file precede those of the

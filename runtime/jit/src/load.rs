@@ -65,6 +65,8 @@ pub struct Loader {
     folder: Option<PathBuf>,
     readable_equations: bool,
     interpreted: bool,
+    /// Whether the mechanism is a separate contact, of which only few functions are called.
+    is_separate_contact: bool,
     /// Whether contacts are separate even if they fit into the contact points of a mechanism, for tests.
     separates_contacts: bool,
 }
@@ -93,6 +95,7 @@ impl Loader {
             folder,
             readable_equations: false,
             interpreted: false,
+            is_separate_contact: false,
             separates_contacts: false,
         }
     }
@@ -137,6 +140,11 @@ impl Loader {
         self
     }
 
+    /// Creates a loader for the declaration of a separate contact.
+    pub(crate) fn separate_contact(text: &str) -> Loader {
+        Loader { is_separate_contact: true, ..Loader::text(text) }
+    }
+
     /// Makes all contacts separate, even if they fit into the contact points of a mechanism.
     #[cfg(test)]
     pub(crate) fn separate_contacts(mut self) -> Loader {
@@ -169,6 +177,7 @@ impl Loader {
         remove_rust_only_options(&mut source);
         let requests = &mut source.mechanism.requests;
         requests.drawing = false;
+        requests.separate_contact = self.is_separate_contact;
         if requests.equations == EquationsOption::Readable && !self.readable_equations {
             requests.equations = EquationsOption::Structure;
         }

@@ -5,7 +5,7 @@ use crate::error::Error;
 use crate::frames::Frames;
 use crate::functions::{LoadedFunction, Matrix, ResultAssembly};
 use crate::internal::InternalFunction;
-use crate::load::declare;
+use crate::load::Loader;
 use crate::robot::{Robot, State};
 use crate::shared::Contact;
 use linkwork::contact::{Law, Restitution};
@@ -13,6 +13,7 @@ use linkwork_compiler::catalogue::Argument;
 use linkwork_compiler::mechanism::ContactVelocityDependence;
 use linkwork_compiler::{SeparateContact, SeparateContactParameter};
 use std::collections::HashMap;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Name of the contact in the mechanism of a separate contact.
 const CONTACT: &str = "touch";
@@ -60,8 +61,16 @@ impl SeparateContacts {
         parameters: &[String],
     ) -> Result<(SeparateContacts, Vec<Contact>), Error> {
         let (mut all, mut contacts) = (SeparateContacts::default(), Vec::new());
-        let mut known: HashMap<&str, usize> = HashMap::new();
         let mut names: Vec<(&str, String)> = Vec::new();
+        let mut known: HashMap<&str, usize> = HashMap::new();
+        let mut first_contacts: Vec<&SeparateContact> = Vec::new();
+        for one in separate {
+            known.entry(&one.declaration).or_insert_with(|| {
+                first_contacts.push(one);
+                first_contacts.len() - 1
+            });
+        }
+        all.kinds = load_kinds(&first_contacts)?;
         for one in separate {
             let frame_of_body = |body: &Option<String>| match body {
                 None => Ok(None),
@@ -74,17 +83,7 @@ impl SeparateContacts {
             if first == second {
                 continue;
             }
-            let kind = match known.get(one.declaration.as_str()) {
-                Some(kind) => *kind,
-                None => {
-                    let robot = declare(&one.declaration).map_err(|error| {
-                        Error::Mechanism(vec![format!("the contact `{}`: {error}", one.name)])
-                    })?;
-                    all.kinds.push(robot);
-                    known.insert(&one.declaration, all.kinds.len() - 1);
-                    all.kinds.len() - 1
-                }
-            };
+            let Some(kind) = known.get(one.declaration.as_str()).copied() else { continue };
             let value_of_parameter = |parameter: &SeparateContactParameter| match parameter {
                 SeparateContactParameter::Number(value) => Ok(PairParameter::Number(*value)),
                 SeparateContactParameter::Parameter(name) => parameters
@@ -121,6 +120,36 @@ impl SeparateContacts {
     pub fn is_empty(&self) -> bool {
         self.pairs.is_empty()
     }
+}
+
+/// Loads the mechanisms of contacts, several at a time.
+///
+/// # Errors
+///
+/// The surfaces of a contact have an error; the first such contact is named.
+fn load_kinds(contacts: &[&SeparateContact]) -> Result<Vec<Robot>, Error> {
+    let threads = std::thread::available_parallelism().map_or(1, usize::from).min(contacts.len().max(1));
+    let next = AtomicUsize::new(0);
+    let load_some = || {
+        let mut loaded = Vec::new();
+        while let Some((index, one)) =
+            Some(next.fetch_add(1, Ordering::Relaxed)).and_then(|index| Some((index, contacts.get(index)?)))
+        {
+            let robot = Loader::separate_contact(&one.declaration).load();
+            let name_contact = |error| Error::Mechanism(vec![format!("the contact `{}`: {error}", one.name)]);
+            loaded.push((index, robot.map_err(name_contact)));
+        }
+        loaded
+    };
+    let mut loaded: Vec<(usize, Result<Robot, Error>)> = std::thread::scope(|scope| {
+        let running: Vec<_> = (0..threads).map(|_| scope.spawn(load_some)).collect();
+        running.into_iter().flat_map(|one| one.join().unwrap_or_default()).collect()
+    });
+    loaded.sort_by_key(|(index, _)| *index);
+    if loaded.len() < contacts.len() {
+        return Err(Error::Internal("a thread that loads contacts failed".to_string()));
+    }
+    loaded.into_iter().map(|(_, robot)| robot).collect()
 }
 
 /// Sets the names of contacts from the names of the declared contacts and those of their points. A contact
@@ -644,8 +673,8 @@ impl SeparateContactFunction {
 }
 
 impl Robot {
-    /// Evaluates a function of separate contacts with the arguments `t` (if the mechanism depends on it), `q`,
-    /// and `v` for velocities.
+    /// Evaluates a function of separate contacts with the arguments `t` (if the mechanism depends on it),
+    /// `q`, and `v` for velocities.
     pub(crate) fn call_separate_contacts(
         &self,
         function: SeparateContactFunction,

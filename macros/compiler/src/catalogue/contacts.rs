@@ -13,6 +13,15 @@ const GAP_AND_COEFFICIENTS: usize = 3;
 
 const TOUCHING: &[FunctionNeed] = &[FunctionNeed::Contacts];
 
+/// Functions that evaluate a separate contact.
+pub(super) const SEPARATE: [GeneratedId; 5] = [
+    GeneratedId::Figures,
+    GeneratedId::ContactGaps,
+    GeneratedId::ContactJacobian,
+    GeneratedId::ContactLaws,
+    GeneratedId::PolytopePoses,
+];
+
 /// Rows of the functions of mechanisms with contacts.
 pub const ROWS: &[Row] = &[
     Row::derived_row(GeneratedId::ContactGaps, "contact_gaps", TOUCHING, |f| Declaration {

@@ -54,8 +54,10 @@ pub fn function_catalogue_rows() -> impl Iterator<Item = &'static Row> {
 
 fn declared_functions(tables: &[&'static [Row]], facts: &Facts) -> Vec<DeclaredFunction> {
     let present = tables.iter().copied().flatten().filter(|row| row.first_unmet_need(facts).is_none());
+    let is_requested = |id: &GeneratedId| !facts.requests.separate_contact || contacts::SEPARATE.contains(id);
     let derived = present.filter_map(|row| match row.made {
-        FunctionBodyOrigin::Derived(id) => Some(row.declare_function(id, facts)),
+        FunctionBodyOrigin::Derived(id) if is_requested(&id) => Some(row.declare_function(id, facts)),
+        FunctionBodyOrigin::Derived(_) => None,
         FunctionBodyOrigin::Written => None,
     });
     derived.collect()

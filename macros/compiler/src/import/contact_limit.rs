@@ -105,7 +105,7 @@ pub(super) fn one_plus_friction_moment_count(contact: &Contact) -> usize {
 
 /// Returns the number of contact points of a contact, with its moments of friction; `None` if a pair of its
 /// surfaces is not supported. A compliant contact has none.
-pub fn contact_point_count(contact: &Contact, collisions: &[CollisionShape]) -> Option<usize> {
+pub(super) fn contact_point_count(contact: &Contact, collisions: &[CollisionShape]) -> Option<usize> {
     if contact.is_compliant() {
         return Some(0);
     }

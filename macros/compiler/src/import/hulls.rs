@@ -25,8 +25,8 @@ const MAX_ERROR: f64 = 0.1;
 const MAX_TRIANGLES: usize = 200_000;
 
 /// Reads the meshes that contacts use, and replaces them by the vertices of their convex hulls. Paths in
-/// `hull("…")` are relative to `folder`. The mechanism has at most `limit` contact points. Returns the paths of
-/// the files that were read.
+/// `hull("…")` are relative to `folder`. The mechanism has at most `limit` contact points. Returns the paths
+/// of the files that were read.
 pub fn read_hulls(
     description: &mut Description,
     folder: &Path,

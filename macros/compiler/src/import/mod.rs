@@ -22,6 +22,7 @@ mod mjcf;
 mod pose;
 mod robot;
 mod sdf;
+mod separate_contacts;
 mod urdf;
 mod whole;
 mod xml;
@@ -29,10 +30,12 @@ mod xml;
 #[cfg(test)]
 mod tests;
 
-pub use contact_limit::contact_point_count;
 pub use file::{LARGEST_FILE, read_imported_file, with_standard_whitespace};
 pub use hulls::read_hulls;
 pub use imported::ImportedMechanism;
+pub use separate_contacts::{
+    SeparateContact, SeparateContactParameter, exceeds_contact_points, separate_contacts,
+};
 
 /// Reads the text of a file. Paths of other files are relative to the folder of the file, which is
 /// `options.path` in `folder`.

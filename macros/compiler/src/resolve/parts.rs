@@ -266,7 +266,11 @@ impl<'g> Builder<'_, 'g> {
                 place.clone(),
                 format!("{count} points of contact, more than {MAX_CONTACT_POINTS}"),
             )
-            .add_help("each adds code: use fewer contact points, or divide the mechanism");
+            .add_help("each adds code: use fewer contact points, or divide the mechanism")
+            .add_help(
+                "mechanisms that are loaded at run time (the command, Python, `linkwork-jit`) may have more, \
+                 between surfaces of bodies, without `derivatives` and without stops that have restitution",
+            );
         }
     }
 

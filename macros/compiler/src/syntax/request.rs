@@ -76,6 +76,8 @@ macro_rules! words {
             pub file_parameters: bool,
             /// Whether mass properties of links are among these parameters.
             pub file_inertials: bool,
+            /// Whether only the functions are derived that evaluate a separate contact.
+            pub separate_contact: bool,
             /// Whether code uses only instructions of the compilation target, without dispatch.
             pub target_only: bool,
             /// Whether results have the same bits on every machine, and in C.

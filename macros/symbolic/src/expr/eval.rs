@@ -186,7 +186,10 @@ impl PerturbedValue {
         let squares = self.perturbed.map(|perturbed| (perturbed - self.value).powi(2));
         let error = (squares.iter().sum::<f64>() / PERTURBED as f64).sqrt();
         // A number that is not finite has an unknown error.
-        ValueWithRoundingError { value: self.value, error: if error.is_nan() { f64::INFINITY } else { error } }
+        ValueWithRoundingError {
+            value: self.value,
+            error: if error.is_nan() { f64::INFINITY } else { error },
+        }
     }
 }
 

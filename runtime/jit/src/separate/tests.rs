@@ -152,7 +152,7 @@ fn separate_contacts_are_those_of_one_mechanism() {
 fn functions_of_separate_contacts_have_names() {
     let values = [("radius", 0.15), ("grip", 0.7)];
     let apart = Loader::text(SCENE).separate_contacts().load().unwrap().with_parameters(&values).unwrap();
-    let mut q = apart.initial_configuration().unwrap().as_slice().to_vec();
+    let q = apart.initial_configuration().unwrap().as_slice().to_vec();
     let v: Vec<f64> = (0..apart.nv()).map(|k| 0.1 * k as f64 - 0.5).collect();
     let result =
         |name: &str, arguments: &[&[f64]]| apart.evaluate(&apart.function(name).unwrap(), arguments).unwrap();

@@ -8,7 +8,6 @@ use super::linear::ImpulseEquations;
 use super::{ContactProblem, RowList};
 use crate::Real;
 
-
 impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     /// Returns the group of each contact, and the number of groups.
     pub(super) fn contact_groups(&self) -> (TotalArray<usize, NK>, usize) {

@@ -1,17 +1,16 @@
 //! Contacts beyond the contact points of a mechanism, each as a mechanism of its own.
 //!
-//! A program with all contacts of many bodies would grow with the number of pairs of bodies. Two surfaces only
-//! depend on the placements of their bodies. A separate contact is therefore a mechanism of two floating
+//! A program with all contacts of many bodies would grow with the number of pairs of bodies. Two surfaces
+//! only depend on the placements of their bodies. A separate contact is therefore a mechanism of two floating
 //! bodies with one contact, in Rust's syntax; pairs with equal surfaces have the same text. Whoever evaluates
 //! it passes the placements of the bodies, and multiplies its contact Jacobian by the Jacobians of both
 //! bodies.
 
-use crate::import::contact_point_count;
-use crate::language::{BodyOrInertiaMethod, SurfaceId};
-use crate::source::ParsedSource;
+use super::contact_limit::contact_point_count;
 use crate::syntax::contact::{MAX_CONTACT_POINTS, collision_shape_indices};
 use crate::syntax::{
-    CollisionShape, Contact, Description, Endpoint, Expr, ExprKind, GROUND, Key, Name, RequestOption, Shape,
+    BodyOrInertiaMethod, CollisionShape, Contact, Description, Endpoint, Expr, ExprKind, GROUND, Key, Name,
+    Shape, SurfaceId,
 };
 
 /// Name of the struct of a separate contact, and the names of its elements.
@@ -48,41 +47,35 @@ pub enum SeparateContactParameter {
     Parameter(String),
 }
 
-impl ParsedSource {
-    /// Whether the declared contacts have more contact points than a mechanism.
-    pub fn exceeds_contact_points(&self) -> bool {
-        let Description { contacts, collisions, .. } = &self.mechanism.description;
-        let counts = contacts.iter().map(|contact| contact_point_count(contact, collisions).unwrap_or(0));
-        counts.sum::<usize>() > MAX_CONTACT_POINTS
-    }
+/// Whether the declared contacts have more contact points than a mechanism.
+pub fn exceeds_contact_points(description: &Description) -> bool {
+    let Description { contacts, collisions, .. } = description;
+    let counts = contacts.iter().map(|contact| contact_point_count(contact, collisions).unwrap_or(0));
+    counts.sum::<usize>() > MAX_CONTACT_POINTS
+}
 
-    /// Removes the contacts without compliance from the mechanism and returns them. Returns `None` if they
-    /// cannot be separated: surfaces of anything but bodies, sizes that depend on tables or named expressions,
-    /// stops with restitution, or the option `derivatives`, which is for all contacts together.
-    pub fn separate_contacts(&mut self) -> Option<Vec<SeparateContact>> {
-        let has_derivatives = self.mechanism.requests.has_option(RequestOption::Derivatives);
-        let description = &mut self.mechanism.description;
-        let has_stops = description
-            .limits
-            .iter()
-            .any(|limit| limit.arguments.expression_of_key(Key::Restitution).is_some());
-        if has_derivatives || has_stops {
-            return None;
-        }
-        let rigid = description.contacts.iter().filter(|contact| !contact.is_compliant());
-        let separate: Option<Vec<Vec<SeparateContact>>> =
-            rigid.map(|contact| separate_contacts_of_surfaces(description, contact)).collect();
-        let separate = separate?.concat();
-        description.contacts.retain(Contact::is_compliant);
-        let used = separate.iter().flat_map(|contact| &contact.parameters);
-        description.separate_contact_parameters = used
-            .filter_map(|parameter| match parameter {
-                SeparateContactParameter::Parameter(name) => Some(name.clone()),
-                SeparateContactParameter::Number(_) => None,
-            })
-            .collect();
-        Some(separate)
+/// Removes the contacts without compliance from a description and returns them. Returns `None` if they cannot
+/// be separated: surfaces of anything but bodies, sizes that depend on tables or named expressions, or stops
+/// with restitution.
+pub fn separate_contacts(description: &mut Description) -> Option<Vec<SeparateContact>> {
+    let has_stops =
+        description.limits.iter().any(|limit| limit.arguments.expression_of_key(Key::Restitution).is_some());
+    if has_stops {
+        return None;
     }
+    let rigid = description.contacts.iter().filter(|contact| !contact.is_compliant());
+    let separate: Option<Vec<Vec<SeparateContact>>> =
+        rigid.map(|contact| separate_contacts_of_surfaces(description, contact)).collect();
+    let separate = separate?.concat();
+    description.contacts.retain(Contact::is_compliant);
+    let used = separate.iter().flat_map(|contact| &contact.parameters);
+    description.separate_contact_parameters = used
+        .filter_map(|parameter| match parameter {
+            SeparateContactParameter::Parameter(name) => Some(name.clone()),
+            SeparateContactParameter::Number(_) => None,
+        })
+        .collect();
+    Some(separate)
 }
 
 /// Returns the separate contacts of a declared contact: one for each pair of its surfaces.
