@@ -643,8 +643,8 @@ impl SeparateContactFunction {
             (
                 SeparateContactFunction::Rates,
                 "contact_rates",
-                "Contact velocities, m/s and rad/s: of each contact the rate of its gap, followed by the slip \
-                 velocities of the first surface on the second one.",
+                "Contact velocities, m/s and rad/s: of each contact the rate of its gap, followed by the \
+                 slip velocities of the first surface on the second one.",
                 [rates, 1],
             ),
             (

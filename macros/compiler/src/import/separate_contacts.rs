@@ -271,8 +271,8 @@ fn bounding_radius_about_body_origin(PlacedSurface { surface, mount }: &PlacedSu
     radius
 }
 
-/// Returns the radius of a sphere about the centre of a surface that contains it; `None` if there is none, or
-/// if it is not a number.
+/// Returns the radius of a sphere about the centre of a surface that contains it; `None` for unbounded
+/// surfaces and for radii that are not numbers.
 fn bounding_radius_about_center(surface: &Expr) -> Option<f64> {
     let ExprKind::Method(_, word, arguments) = &surface.kind else { return None };
     let Some(BodyOrInertiaMethod::Surface(id)) = word.id else { return None };

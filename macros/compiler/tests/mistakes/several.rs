@@ -123,8 +123,8 @@ fn long_chains_have_inertia() {
         let parent = if k == 0 { "ground".to_string() } else { format!("b{}.at(0.1 * x)", k - 1) };
         let axis = if k % 2 == 0 { "y" } else { "z" };
         fields += &format!(
-            "#[body(mass = 1, com = x, inertia = sphere(1, 0.1))] b{k}: Body, #[joint({parent} -> b{k}, about \
-             = {axis})] j{k}: Pin,"
+            "#[body(mass = 1, com = x, inertia = sphere(1, 0.1))] b{k}: Body,
+            #[joint({parent} -> b{k}, about = {axis})] j{k}: Pin,"
         );
     }
     let found = compiler_messages("", &fields);

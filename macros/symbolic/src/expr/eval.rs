@@ -139,7 +139,7 @@ pub struct ValueWithRoundingError {
 
 impl ValueWithRoundingError {
     /// Maximum ratio of a value to its error for which the value may be rounding error alone. For random
-    /// mechanisms, the ratio of pivots of the mass matrix that are exactly zero is at most 2. That of other
+    /// mechanisms, the ratio of pivots of the mass matrix that are exactly zero is at most 0.5. That of other
     /// pivots is at least `1e9`, or `1e6` if masses differ by twelve orders of magnitude.
     const MOST_ERRORS: f64 = 32.0;
 
@@ -149,7 +149,7 @@ impl ValueWithRoundingError {
     }
 }
 
-/// Number of perturbed values beside each value.
+/// Number of perturbed values for each value.
 const PERTURBED: usize = 4;
 
 /// A value, and the values for random perturbations of all constants, symbols and operations by relative

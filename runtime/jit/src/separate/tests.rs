@@ -64,15 +64,35 @@ struct Scene {
     stone_pose: Free,
     #[contact(ball.sphere(radius), ground.plane(z), friction = grip)]
     ball_on_floor: Contact,
-    #[contact(brick.at([0.01, 0, 0.02]).cuboid(0.2, 0.3, 0.4), ground.plane(z), friction = 0.3, restitution = 0.2)]
+    #[contact(
+        brick.at([0.01, 0, 0.02]).cuboid(0.2, 0.3, 0.4),
+        ground.plane(z),
+        friction = 0.3,
+        restitution = 0.2
+    )]
     brick_on_floor: Contact,
     #[contact(lower.at([0, 0, -0.3]).capsule(0.05, 0.4, z), brick.cuboid(0.2, 0.3, 0.4), friction = 0.4)]
     arm_on_brick: Contact,
-    #[contact(upper.cuboid(0.1, 0.2, 0.3), brick.cuboid(0.2, 0.3, 0.4), friction = 0.4, restitution = poisson(0.1))]
+    #[contact(
+        upper.cuboid(0.1, 0.2, 0.3),
+        brick.cuboid(0.2, 0.3, 0.4),
+        friction = 0.4,
+        restitution = poisson(0.1)
+    )]
     brick_on_arm: Contact,
-    #[contact(ball.sphere(radius), lower.capsule(0.05, 0.4, z), friction = grip, torsional = 0.01, rolling = 0.002)]
+    #[contact(
+        ball.sphere(radius),
+        lower.capsule(0.05, 0.4, z),
+        friction = grip,
+        torsional = 0.01,
+        rolling = 0.002
+    )]
     ball_on_arm: Contact,
-    #[contact(stone.hull([[0.2, 0, 0], [-0.1, 0.2, 0], [-0.1, -0.2, 0], [0, 0, 0.3]]), brick.cuboid(0.2, 0.3, 0.4), friction = 0.6)]
+    #[contact(
+        stone.hull([[0.2, 0, 0], [-0.1, 0.2, 0], [-0.1, -0.2, 0], [0, 0, 0.3]]),
+        brick.cuboid(0.2, 0.3, 0.4),
+        friction = 0.6
+    )]
     stone_on_brick: Contact,
     #[contact(stone.cylinder(0.1, 0.3, z), ground.plane(z))]
     stone_on_floor: Contact,
