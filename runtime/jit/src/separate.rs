@@ -379,8 +379,8 @@ impl EvaluatedContacts {
         if bound.is_nan() { f64::NEG_INFINITY } else { bound }
     }
 
-    /// Returns all contacts with a gap of at most `reach` in one of the states, or of at most the distance
-    /// that bodies move between the states. If these are more than `most` contacts or `most_rows` contact
+    /// Returns all contacts with a gap of at most `reach` in one of the states, or of at most twice the
+    /// distance that their bodies move between the states. If these are more than `most` contacts or `most_rows` contact
     /// velocities, the most distant ones are omitted; an omitted contact that touches is an error, with the
     /// contact.
     pub fn near_contacts(
@@ -392,19 +392,21 @@ impl EvaluatedContacts {
     ) -> Result<NearContacts, usize> {
         let placements: Vec<Vec<BodyPlacement>> =
             states.iter().map(|state| self.body_placements(robot, *state)).collect();
-        let motion = match placements.as_slice() {
+        let displacements: Vec<f64> = match placements.as_slice() {
             [start, end] => start
                 .iter()
                 .zip(end)
                 .zip(&self.radii)
                 .map(|((start, end), radius)| start.largest_displacement(end, *radius))
-                .fold(0.0, f64::max),
-            _ => 0.0,
+                .collect(),
+            _ => vec![0.0; self.bodies.len()],
         };
-        let reach = reach + 4.0 * motion;
         let mut near: Vec<(f64, usize, usize)> = Vec::new();
         let mut gaps = Vec::new();
         for (index, pair) in self.pairs.iter().enumerate() {
+            // Impulses may stop and reverse the motion of both bodies.
+            let motion: f64 = pair.bodies.iter().flatten().map(|body| displacements[*body]).sum();
+            let reach = reach + 2.0 * motion;
             gaps.clear();
             gaps.resize(pair.contact_count(), f64::INFINITY);
             for placements in &placements {
