@@ -380,9 +380,9 @@ impl EvaluatedContacts {
     }
 
     /// Returns all contacts with a gap of at most `reach` in one of the states, or of at most twice the
-    /// distance that their bodies move between the states. If these are more than `most` contacts or `most_rows` contact
-    /// velocities, the most distant ones are omitted; an omitted contact that touches is an error, with the
-    /// contact.
+    /// distance that their bodies move between the states. If these are more than `most` contacts or
+    /// `most_rows` contact velocities, the most distant ones are omitted; an omitted contact that touches is
+    /// an error, with the contact.
     pub fn near_contacts(
         &self,
         robot: &Robot,
