@@ -152,11 +152,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
 
     /// Evaluates a function of the robot. After an error, such as an absent function, the results are NaN.
     fn call_function(&self, f: InternalFunction, state: State<'_>, out: &mut [f64]) {
-        let robot = self.robot();
-        let index = robot.shared.internal[f as usize];
-        if index.is_none_or(|index| robot.call_with_state_into(index, state, out).is_err()) {
-            out.fill(f64::NAN);
-        }
+        self.robot().call_internal_function(f, state, out);
     }
 
     /// Returns a vector whose first `count` entries are the results of a function, and whose other entries

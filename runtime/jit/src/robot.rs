@@ -3,10 +3,12 @@
 use crate::AnyTable;
 use crate::error::Error;
 use crate::functions::{LoadedFunction, Matrix, ResultAssembly};
+use crate::internal::InternalFunction;
 use crate::layout::InputLayout;
 use crate::routine::Values;
-use crate::shared::{Quantity, SharedMechanism};
+use crate::shared::{Contact, Quantity, SharedMechanism};
 use linkwork::__private::{Figure, validate};
+use linkwork::contact::{Law, Restitution};
 use linkwork_compiler::catalogue::Argument;
 use std::cell::RefCell;
 use std::fmt;
@@ -520,6 +522,29 @@ impl Robot {
     fn call_error(&self, entry: &LoadedFunction, count: usize, arguments: &[&[f64]], out: usize) -> Error {
         let missing = self.check_no_values_missing().err();
         missing.unwrap_or_else(|| argument_length_error(entry, count, arguments, out))
+    }
+
+    /// Evaluates a function that the runtime calls. After an error, such as an absent function, the results
+    /// are NaN.
+    pub(crate) fn call_internal_function(&self, f: InternalFunction, state: State<'_>, out: &mut [f64]) {
+        let index = self.shared.internal[f as usize];
+        if index.is_none_or(|index| self.call_with_state_into(index, state, out).is_err()) {
+            out.fill(f64::NAN);
+        }
+    }
+
+    /// Returns the coefficients of the contacts; NaN if they cannot be evaluated.
+    pub(crate) fn contact_laws(&self) -> Vec<Law<f64>> {
+        let contacts = &self.shared.contacts;
+        let mut values = vec![f64::NAN; 3 * contacts.len()];
+        self.call_internal_function(InternalFunction::ContactLaws, State::default(), &mut values);
+        let law_of_contact = |(contact, values): (&Contact, &[f64])| Law {
+            friction: values[0],
+            restitution: values[1],
+            stiction: values[2],
+            hypothesis: if contact.of_impulses { Restitution::Poisson } else { Restitution::Newton },
+        };
+        contacts.iter().zip(values.chunks_exact(3)).map(law_of_contact).collect()
     }
 
     /// Evaluates a function, given by its index, with the arguments that it takes from the state.

@@ -8,15 +8,15 @@ use crate::internal::InternalFunction;
 use crate::load::Loader;
 use crate::robot::{Robot, State};
 use crate::shared::Contact;
-use linkwork::contact::{Law, Restitution};
+use linkwork::contact::Law;
+use linkwork::nalgebra::{Matrix3, Rotation3};
+use linkwork::rotation::quaternion_of_rotation;
 use linkwork_compiler::catalogue::Argument;
 use linkwork_compiler::mechanism::ContactVelocityDependence;
 use linkwork_compiler::{SeparateContact, SeparateContactParameter};
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Name of the contact in the mechanism of a separate contact.
-const CONTACT: &str = "touch";
 /// Gap up to which surfaces touch, m.
 pub(crate) const TOUCHING: f64 = 1e-8;
 /// Numbers of configuration coordinates and velocities of a floating body.
@@ -102,7 +102,7 @@ impl SeparateContacts {
             let base = contacts.len();
             let rows: usize = contacts.iter().map(|contact: &Contact| contact.rows[1]).sum();
             for contact in &all.kinds[kind].shared.contacts {
-                names.push((&one.name, contact.name[CONTACT.len()..].to_string()));
+                names.push((&one.name, contact.name.clone()));
                 contacts.push(Contact {
                     name: String::new(),
                     rows: [rows + contact.rows[0], contact.rows[1]],
@@ -200,13 +200,10 @@ impl EvaluatedPair {
         self.robot.shared.contacts.len()
     }
 
-    /// Evaluates a function of the pair; after an error the results are NaN.
+    /// Evaluates a function of the pair in a configuration of its mechanism; after an error the results are
+    /// NaN.
     fn call(&self, function: InternalFunction, q: &[f64], out: &mut [f64]) {
-        let index = self.robot.shared.internal[function as usize];
-        let state = State { q, ..State::default() };
-        if index.is_none_or(|index| self.robot.call_with_state_into(index, state, out).is_err()) {
-            out.fill(f64::NAN);
-        }
+        self.robot.call_internal_function(function, State { q, ..State::default() }, out);
     }
 }
 
@@ -222,27 +219,9 @@ impl BodyPlacement {
     /// Returns the configuration of a floating body in this placement: its position, and its orientation as a
     /// unit quaternion.
     fn floating_configuration(&self) -> [f64; FLOATING[0]] {
-        let r = |row: usize, column: usize| self.rotation[3 * column + row];
-        // The largest component is computed from the diagonal, so that no difference loses digits.
-        let squares = [
-            1.0 + r(0, 0) - r(1, 1) - r(2, 2),
-            1.0 - r(0, 0) + r(1, 1) - r(2, 2),
-            1.0 - r(0, 0) - r(1, 1) + r(2, 2),
-            1.0 + r(0, 0) + r(1, 1) + r(2, 2),
-        ];
-        let largest = (0..4).fold(0, |best, k| if squares[k] > squares[best] { k } else { best });
-        let w = [r(2, 1) - r(1, 2), r(0, 2) - r(2, 0), r(1, 0) - r(0, 1)];
-        let mut quaternion = match largest {
-            3 => [w[0], w[1], w[2], squares[3]],
-            axis => {
-                let sum = |k: usize| if k == axis { squares[axis] } else { r(k, axis) + r(axis, k) };
-                [sum(0), sum(1), sum(2), w[axis]]
-            }
-        };
-        let norm = quaternion.iter().map(|x| x * x).sum::<f64>().sqrt();
-        quaternion.iter_mut().for_each(|x| *x /= norm);
+        let rotation = Rotation3::from_matrix_unchecked(Matrix3::from_column_slice(&self.rotation));
+        let [a, b, c, d] = quaternion_of_rotation(&rotation).coords.into();
         let [x, y, z] = self.position;
-        let [a, b, c, d] = quaternion;
         [x, y, z, a, b, c, d]
     }
 
@@ -331,7 +310,7 @@ impl EvaluatedContacts {
             own.validate()?;
             let pair =
                 EvaluatedPair { robot: own, bodies, radii: pair.radii, first_contact: pair.first_contact };
-            found.laws.extend(pair.contact_laws());
+            found.laws.extend(pair.robot.contact_laws());
             found.pairs.push(pair);
         }
         Ok(Some(found))
@@ -603,22 +582,6 @@ impl EvaluatedContacts {
                 }
             }
         });
-    }
-}
-
-impl EvaluatedPair {
-    /// Returns the coefficients of the contacts of the pair.
-    fn contact_laws(&self) -> Vec<Law<f64>> {
-        let contacts = &self.robot.shared.contacts;
-        let mut values = vec![f64::NAN; 3 * contacts.len()];
-        self.call(InternalFunction::ContactLaws, &[], &mut values);
-        let law_of_contact = |(contact, values): (&Contact, &[f64])| Law {
-            friction: values[0],
-            restitution: values[1],
-            stiction: values[2],
-            hypothesis: if contact.of_impulses { Restitution::Poisson } else { Restitution::Newton },
-        };
-        contacts.iter().zip(values.chunks_exact(3)).map(law_of_contact).collect()
     }
 }
 

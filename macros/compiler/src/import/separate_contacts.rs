@@ -245,7 +245,8 @@ fn has_free_sizes(surface: &Expr) -> bool {
 fn replace_sizes_by_parameters(surface: &mut Expr, parameters: &mut Vec<(String, SeparateContactParameter)>) {
     let ExprKind::Method(_, _, arguments) = &mut surface.kind else { return };
     for argument in arguments {
-        let Some(value) = argument.literal_number() else { continue };
+        // Another number is an error, which names it.
+        let Some(value) = argument.literal_number().filter(|value| *value > 0.0) else { continue };
         let name = format!("{SIZE}{}", parameters.len());
         argument.kind = ExprKind::Name(name.clone());
         parameters.push((name, SeparateContactParameter::Number(value)));

@@ -11,7 +11,7 @@ use std::borrow::Borrow;
 type Vector<const N: usize> = SVector<f64, N>;
 type Square<const N: usize> = SMatrix<f64, N, N>;
 
-impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot> + Clone> Padded<NQ, NV, NU, R> {
+impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded<NQ, NV, NU, R> {
     /// Whether the derivatives of the contacts are available.
     pub(super) fn has_contact_derivatives(&self) -> bool {
         self.has_derivatives()

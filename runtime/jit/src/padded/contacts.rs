@@ -458,24 +458,13 @@ impl<
     }
 
     fn contact_laws(&self) -> [Law<f64>; NK] {
+        let hypothesis = Restitution::Newton;
+        let none = Law { friction: 0.0, restitution: 0.0, stiction: 0.0, hypothesis };
         if let Some((separate, near)) = self.near_contacts() {
-            let hypothesis = Restitution::Newton;
-            let none = Law { friction: 0.0, restitution: 0.0, stiction: 0.0, hypothesis };
             let law_of_contact = |contact: &usize| separate.contact_law(*contact);
             return std::array::from_fn(|k| near.contacts.get(k).and_then(law_of_contact).unwrap_or(none));
         }
-        let contacts = &self.robot().shared.contacts;
-        let mut laws = vec![0.0; 3 * contacts.len()];
-        self.plain.call_function(InternalFunction::ContactLaws, State::default(), &mut laws);
-        std::array::from_fn(|k| {
-            let contact_coefficient = |i: usize| laws.get(3 * k + i).copied().unwrap_or(0.0);
-            let by_impulses = contacts.get(k).is_some_and(|contact| contact.of_impulses);
-            Law {
-                friction: contact_coefficient(0),
-                restitution: contact_coefficient(1),
-                stiction: contact_coefficient(2),
-                hypothesis: if by_impulses { Restitution::Poisson } else { Restitution::Newton },
-            }
-        })
+        let laws = self.robot().contact_laws();
+        std::array::from_fn(|k| laws.get(k).copied().unwrap_or(none))
     }
 }
