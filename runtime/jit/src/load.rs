@@ -8,6 +8,7 @@ use crate::frames::Frames;
 use crate::functions::CallableFunctionBuilder;
 use crate::internal::INTERNAL;
 use crate::methods::METHODS;
+use crate::names::CONTACTS;
 use crate::polytopes::Polytopes;
 use crate::robot::Robot;
 use crate::separate::{SeparateContactFunction, SeparateContacts};
@@ -333,9 +334,6 @@ pub fn compiled(
     Ok(Robot::new(Arc::new(extract_shared_data(source, separate, model, output)?), false))
 }
 
-/// Maximum number of contact points of a loaded mechanism.
-const MAX_CONTACT_POINTS: usize = 16_384;
-
 /// Parses the struct and imports its file. Contacts that have more contact points than a mechanism become
 /// separate where possible; otherwise contacts of the file are left out, as in compiled mechanisms.
 #[doc(hidden)]
@@ -346,13 +344,7 @@ pub fn parse_source_and_separate_contacts(
     cx: &mut Diagnostics,
 ) -> Option<(ParsedSource, Vec<SeparateContact>)> {
     let mut own = Diagnostics::new();
-    let source = parse_source_with_contact_limit(
-        arguments.clone(),
-        item.clone(),
-        folder,
-        MAX_CONTACT_POINTS,
-        &mut own,
-    );
+    let source = parse_source_with_contact_limit(arguments.clone(), item.clone(), folder, CONTACTS, &mut own);
     if let Some(mut source) = source.filter(|_| own.is_empty()) {
         if !source.exceeds_contact_points() {
             return Some((source, Vec::new()));

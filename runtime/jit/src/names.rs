@@ -18,7 +18,7 @@ const COUNT: usize = 1000;
 /// Number of lists before that of contacts.
 const LISTS: usize = NameListKind::Contacts as usize;
 /// Maximum number of contacts of a loaded mechanism.
-const CONTACTS: usize = 16_384;
+pub(crate) const CONTACTS: usize = 16_384;
 /// Number of digits of each placeholder number, except those of contacts.
 const DIGITS: usize = 4;
 /// Number of digits of each placeholder number of a contact.

@@ -148,7 +148,7 @@ fn vertex_and_corner_counts_of_surfaces(
 }
 
 /// Returns the components of a vector that is written as three numbers.
-fn constant_vector(e: &Expr) -> Option<[f64; 3]> {
+pub(super) fn constant_vector(e: &Expr) -> Option<[f64; 3]> {
     let ExprKind::Array(components) = &e.kind else { return None };
     let components: Option<Vec<f64>> = components.iter().map(Expr::literal_number).collect();
     components?.try_into().ok()

@@ -6,7 +6,7 @@
 //! it passes the placements of the bodies, and multiplies its contact Jacobian by the Jacobians of both
 //! bodies.
 
-use super::contact_limit::contact_point_count;
+use super::contact_limit::{constant_vector, contact_point_count};
 use crate::syntax::contact::{MAX_CONTACT_POINTS, collision_shape_indices};
 use crate::syntax::{
     BodyOrInertiaMethod, CollisionShape, Contact, Description, Endpoint, Expr, ExprKind, GROUND, Key, Name,
@@ -295,7 +295,5 @@ fn bounding_radius_about_center(surface: &Expr) -> Option<f64> {
 
 /// Returns the norm of a vector that is written as three numbers.
 fn constant_vector_norm(e: &Expr) -> Option<f64> {
-    let ExprKind::Array(components) = &e.kind else { return None };
-    let components: Option<Vec<f64>> = components.iter().map(Expr::literal_number).collect();
-    Some(components?.into_iter().fold(0.0, f64::hypot))
+    constant_vector(e).map(|components| components.into_iter().fold(0.0, f64::hypot))
 }

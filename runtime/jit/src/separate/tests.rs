@@ -1,6 +1,6 @@
 //! Comparison of separate contacts with contacts of one mechanism.
 
-use super::BodyPlacement;
+use super::evaluated::BodyPlacement;
 use crate::load::{Loader, declare};
 use crate::padded::PaddedContacts;
 use linkwork::contact::Rows;
